@@ -1,0 +1,13 @@
+# Every library from outside, found once. Each is used behind one header of ours (docs/architecture.md).
+find_package(TBB REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(GDAL REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(PNG REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+if(RETALHO_SUITESPARSE)
+  find_library(CHOLMOD_LIBRARY cholmod)
+  find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+endif()

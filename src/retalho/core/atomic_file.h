@@ -1,0 +1,39 @@
+// Outputs are complete or absent: written beside their final name, flushed to disk, renamed at the end.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace retalho {
+
+/// A file in the making. Write to `temporary()` by any means, then `commit()`. Destroyed without commit, it leaves
+/// nothing behind and the old file, if any, untouched.
+class AtomicFile {
+ public:
+  /// Reserves a name beside `path` that ends in the same extension (so that drivers which look at it still work).
+  /// Throws CannotWrite when `path` exists and `overwrite` is false, or when its folder is missing or not writable.
+  AtomicFile(std::string path, bool overwrite);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  const std::string& temporary() const { return temporary_; }
+
+  /// fsync and rename. Throws CannotWrite (and removes the temporary) when either fails.
+  void commit();
+
+ private:
+  std::string path_;
+  std::string temporary_;
+  bool overwrite_;
+  bool committed_ = false;
+};
+
+/// Writes `bytes` to `path` atomically. Throws CannotWrite.
+void write_file(const std::string& path, std::string_view bytes, bool overwrite);
+
+/// The whole file as bytes. Throws CannotRead (missing, a folder, unreadable).
+std::string read_file(const std::string& path);
+
+}  // namespace retalho

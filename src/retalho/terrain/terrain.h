@@ -1,0 +1,68 @@
+// A terrain model: a height surface on a TIN, with all that is needed to evaluate it, draw it and write it down.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "retalho/bernstein/triangle.h"
+#include "retalho/raster/georef.h"
+#include "retalho/raster/mask.h"
+#include "retalho/tin/tin.h"
+
+namespace retalho {
+
+enum class SurfaceKind : std::uint8_t { linear = 1, powell_sabin = 2, clough_tocher = 3 };
+/// How Clough-Tocher sets the cross derivative at the middle of an edge (docs/mathematics.md, section 3).
+enum class CrossDerivative : std::uint8_t {
+  perpendicular = 0,  ///< the paper's: linear along the edge, perpendicular to it; quadratics exact
+  cubic = 1,          ///< from the two triangles' data; cubics exact, one stored fallback bit an edge
+};
+enum class GradientKind : std::uint8_t { none = 0, normals = 1, quadratic = 2, network = 3, given = 4 };
+
+/// The grid that a model was made from: its size, cells and valid cells. Queries outside answer "no data".
+struct GridDomain {
+  int columns = 0, rows = 0;
+  double cell_width = 1, cell_height = 1;  ///< local units
+  Mask valid;                              ///< empty: every cell is valid
+};
+
+struct Terrain {
+  SurfaceKind kind = SurfaceKind::linear;
+  CrossDerivative cross_derivative = CrossDerivative::perpendicular;
+  GradientKind gradient_kind = GradientKind::none;
+  Georef georef;
+  GridDomain grid;                 ///< columns == 0: made from scattered points, valid on the triangulation
+  Tin tin;
+  std::vector<Vec2> gradients;     ///< one a vertex (dz/dx, dz/dy in local units); empty for linear
+  std::vector<double> edge_split;  ///< Powell-Sabin: lambda of each edge from its lower-index end, by build_edges' order
+  std::vector<std::uint8_t> edge_fallback;  ///< cubic Clough-Tocher: 1 where the edge falls back to perpendicular
+  double tolerance = 0;            ///< the max_error asked for; 0: none
+};
+
+/// One polynomial piece: a triangle and its ordinates (the first ordinate_count(degree) of `ordinates`).
+struct TerrainPatch {
+  std::array<Vec2, 3> corners;  ///< counter-clockwise, local coordinates
+  int degree = 1;
+  std::array<double, 10> ordinates{};  ///< in bernstein/triangle.h's order
+};
+
+/// Pieces a triangle: 1 linear, 6 Powell-Sabin, 3 Clough-Tocher.
+int patches_per_triangle(SurfaceKind kind);
+
+/// Powell-Sabin, Clough-Tocher or linear pieces of one triangle of the TIN. `edges` is build_edges(terrain.tin).
+/// Neighbouring triangles get the same ordinates on a shared edge, to the last bit.
+/// Writes patches_per_triangle(kind) pieces into `out` and returns how many.
+int triangle_patches(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle, std::array<TerrainPatch, 6>& out);
+
+/// "powell-sabin" and so on, as the program spells them.
+const char* surface_name(SurfaceKind kind);
+const char* gradient_name(GradientKind kind);
+
+/// How many numbers a plain table of the model stores: x, y and the coefficients (1 or 3) of each vertex.
+std::size_t number_count(const Terrain& terrain);
+/// Coefficients alone: 1 a vertex for linear, 3 for the smooth kinds.
+std::size_t coefficient_count(const Terrain& terrain);
+
+}  // namespace retalho
