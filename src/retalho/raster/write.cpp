@@ -1,0 +1,202 @@
+// write_raster: one band of heights through any GDAL driver that can create or copy, complete or not at all.
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "retalho/core/atomic_file.h"
+#include "retalho/core/error.h"
+#include "retalho/raster/gdal.h"
+#include "retalho/raster/io.h"
+
+namespace retalho {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool can(GDALDriver& driver, const char* what) {
+  return CPLTestBool(CSLFetchNameValueDef(driver.GetMetadata(), what, "NO"));
+}
+
+GDALDriver& choose_driver(const std::string& path, const std::string& wanted) {
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  if (!wanted.empty()) {
+    GDALDriver* driver = manager.GetDriverByName(wanted.c_str());
+    if (driver && can(*driver, GDAL_DCAP_RASTER) &&
+        (can(*driver, GDAL_DCAP_CREATE) || can(*driver, GDAL_DCAP_CREATECOPY)))
+      return *driver;
+    throw CannotWrite(fmt::format("GDAL has no raster driver '{}' that writes: gdalinfo --formats lists them", wanted),
+                      path);
+  }
+  std::string extension = fs::path(path).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (int k = 0; k < manager.GetDriverCount() && !extension.empty(); ++k) {
+    GDALDriver& driver = *manager.GetDriver(k);
+    if (!can(driver, GDAL_DCAP_RASTER) || !(can(driver, GDAL_DCAP_CREATE) || can(driver, GDAL_DCAP_CREATECOPY)))
+      continue;
+    const char* known = driver.GetMetadataItem(GDAL_DMD_EXTENSIONS);
+    const CPLStringList list(CSLTokenizeString2(known ? known : "", " ", 0));
+    if (list.FindString(extension.c_str()) >= 0) return driver;
+  }
+  throw CannotWrite(
+      fmt::format("'{}': no raster format that GDAL writes has the ending '{}': use .tif", path, extension), path);
+}
+
+bool is_double(const Raster& raster) {
+  return std::holds_alternative<std::vector<double>>(raster.heights);
+}
+
+/// NaN where the driver and other tools understand it, else a value that no height has.
+double choose_nodata(const Raster& raster, const GDALDriver& driver) {
+  const std::string name = driver.GetDescription();
+  for (const char* able : {"GTiff", "COG", "netCDF", "ENVI", "GPKG", "KEA", "HDF5"})
+    if (name == able) return std::numeric_limits<double>::quiet_NaN();
+  return std::visit(
+      [](const auto& heights) {
+        for (const double candidate : {-9999.0, -32768.0, -99999.0})
+          if (std::find(heights.begin(), heights.end(), candidate) == heights.end()) return candidate;
+        return -1e30;
+      },
+      raster.heights);
+}
+
+CPLStringList creation_options(const GDALDriver& driver, const Raster& raster, const WriteOptions& options) {
+  CPLStringList list;
+  for (const std::string& option : options.creation_options) list.AddString(option.c_str());
+  if (!options.creation_options.empty() || std::string(driver.GetDescription()) != "GTiff") return list;
+  for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER"}) list.AddString(option);
+  if (raster.columns >= 256 && raster.rows >= 256) list.AddString("TILED=YES");
+  return list;
+}
+
+void set_facts(GDALDataset& dataset, const Raster& raster, double nodata) {
+  const Georef& g = raster.georef;
+  const double width = raster.cell_width / g.scale_x, height = raster.cell_height / g.scale_y;
+  std::array<double, 6> gt{g.origin_x - 0.5 * width, width, 0, g.origin_y + 0.5 * height, 0, -height};
+  dataset.SetGeoTransform(gt.data());
+  OGRSpatialReference crs;
+  if (!g.crs_wkt.empty() && crs.importFromWkt(g.crs_wkt.c_str()) == OGRERR_NONE) {
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    dataset.SetSpatialRef(&crs);
+  }
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  band.SetNoDataValue(nodata);
+  if (!raster.height_unit.empty()) band.SetUnitType(raster.height_unit.c_str());
+}
+
+void put_rows(GDALDataset& dataset, const Raster& raster, double nodata, const GdalMessages& messages,
+              const Context& context) {
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  int block_width = 0, block_height = 1;
+  band.GetBlockSize(&block_width, &block_height);
+  const auto columns = static_cast<std::size_t>(raster.columns);
+  std::visit(
+      [&](const auto& heights) {
+        using Height = typename std::remove_cvref_t<decltype(heights)>::value_type;
+        std::vector<Height> buffer;
+        for (int row = 0; row < raster.rows; row += block_height) {
+          context.check();
+          const int rows = std::min(block_height, raster.rows - row);
+          const Height* const from = heights.data() + static_cast<std::size_t>(row) * columns;
+          buffer.assign(from, from + columns * static_cast<std::size_t>(rows));
+          if (!std::isnan(nodata))
+            for (Height& h : buffer)
+              if (std::isnan(h)) h = static_cast<Height>(nodata);
+          const CPLErr outcome = band.RasterIO(GF_Write, 0, row, raster.columns, rows, buffer.data(), raster.columns,
+                                               rows, sizeof(Height) == 8 ? GDT_Float64 : GDT_Float32, 0, 0, nullptr);
+          if (outcome != CE_None || messages.failed()) return;  // the caller looks at the messages
+          context.report("write", static_cast<double>(row + rows) / raster.rows);
+        }
+      },
+      raster.heights);
+}
+
+/// Makes `file` with `driver`; what went wrong is in `messages`.
+void make(GDALDriver& driver, const std::string& file, const Raster& raster, const WriteOptions& options,
+          const GdalMessages& messages, const Context& context) {
+  const GDALDataType type = is_double(raster) ? GDT_Float64 : GDT_Float32;
+  const CPLStringList list = creation_options(driver, raster, options);
+  const double nodata = choose_nodata(raster, driver);
+  char** const creation = const_cast<CPLStringList&>(list).List();
+  if (can(driver, GDAL_DCAP_CREATE)) {
+    const DatasetPtr dataset(driver.Create(file.c_str(), raster.columns, raster.rows, 1, type, creation));
+    if (!dataset) return;
+    set_facts(*dataset, raster, nodata);
+    put_rows(*dataset, raster, nodata, messages, context);
+    return;  // closing may fail too: GDAL says so through the messages
+  }
+  GDALDriver& memory = *GetGDALDriverManager()->GetDriverByName("MEM");
+  const DatasetPtr source(memory.Create("", raster.columns, raster.rows, 1, type, nullptr));
+  if (!source) return;
+  set_facts(*source, raster, nodata);
+  put_rows(*source, raster, nodata, messages, context);
+  const DatasetPtr copy(driver.CreateCopy(file.c_str(), source.get(), TRUE, creation, nullptr, nullptr));
+}
+
+/// Files that a driver made beside `temporary` (.prj, .hdr, .aux.xml), as what follows the temporary's stem.
+std::set<std::string> sidecars(const fs::path& temporary) {
+  std::set<std::string> found;
+  const std::string stem = temporary.stem().string();
+  const fs::path folder = temporary.has_parent_path() ? temporary.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(stem) && name != temporary.filename().string()) found.insert(name.substr(stem.size()));
+  }
+  return found;
+}
+
+}  // namespace
+
+void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options, const Context& context) {
+  register_gdal();
+  if (raster.columns < 1 || raster.rows < 1)
+    throw CannotWrite(fmt::format("'{}': a raster without cells cannot be written", path), path);
+  GDALDriver& driver = choose_driver(path, options.driver);
+  AtomicFile file(path, options.overwrite);
+  const fs::path temporary(file.temporary()), target(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const auto beside = [&](const fs::path& of, const std::string& tail) {
+    return (folder / (of.stem().string() + tail));
+  };
+
+  // Statistics, masks and overviews beside an old file would be taken for the new one's.
+  std::error_code ec;
+  std::vector<std::string> leftovers;
+  for (const char* tail : {".aux.xml", ".ovr", ".msk"})
+    if (fs::exists(path + tail, ec)) leftovers.push_back(path + tail);
+  if (!options.overwrite && !leftovers.empty())
+    throw CannotWrite(fmt::format("'{}' exists and would be taken as part of '{}': add --overwrite to remove it",
+                                  leftovers.front(), path),
+                      path);
+
+  std::set<std::string> made;
+  try {
+    const GdalMessages messages;
+    make(driver, file.temporary(), raster, options, messages, context);
+    made = sidecars(temporary);
+    if (messages.failed() || !fs::exists(temporary, ec))
+      throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
+                                    messages.words("no reason was given")),
+                        path);
+    for (const std::string& tail : made)
+      if (!options.overwrite && fs::exists(beside(target, tail), ec))
+        throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", beside(target, tail).string()),
+                          path);
+  } catch (...) {
+    for (const std::string& tail : sidecars(temporary)) fs::remove(beside(temporary, tail), ec);
+    throw;
+  }
+  for (const std::string& old : leftovers) fs::remove(old, ec);
+  for (const std::string& tail : made) fs::rename(beside(temporary, tail), beside(target, tail), ec);
+  file.commit();
+}
+
+}  // namespace retalho
