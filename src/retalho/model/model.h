@@ -14,7 +14,8 @@ using Model = std::variant<Terrain>;
 
 /// The file's bytes. The same model gives the same bytes.
 std::string encode_model(const Model& model);
-/// Throws CannotRead for anything that encode_model did not write: every proper prefix and every changed byte is refused.
+/// Throws CannotRead for anything that encode_model did not write: every proper prefix and every changed byte is
+/// refused.
 Model decode_model(std::string_view bytes, const std::string& file = {});
 
 /// Atomic. Throws CannotWrite.

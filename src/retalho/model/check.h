@@ -1,0 +1,21 @@
+// Is a model one that the rest of the house may use without a doubt? Asked of every model before it is written and
+// after it is read. Internal to the room.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "retalho/terrain/terrain.h"
+
+namespace retalho {
+
+/// Inner and border edges of a TIN with correct neighbours: the length of build_edges' table, without building it.
+std::size_t edge_count(const Tin& tin);
+
+/// What is wrong with `terrain`, in words; empty: nothing. Asks for finite numbers, at least one triangle, vertex
+/// indices in range, triangles counter-clockwise (exactly) with neighbours as build_neighbors finds them, and arrays as
+/// long as the surface kind says. It does not ask whether far triangles overlap. Throws BadInput where build_neighbors
+/// does.
+std::string find_fault(const Terrain& terrain);
+
+}  // namespace retalho

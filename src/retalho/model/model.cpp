@@ -1,0 +1,42 @@
+#include "retalho/model/model.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "retalho/core/atomic_file.h"
+#include "retalho/core/error.h"
+#include "retalho/model/envelope.h"
+#include "retalho/model/model_codec.h"
+
+namespace retalho {
+
+std::string encode_model(const Model& model) {
+  return seal(encode_content(model));
+}
+
+Model decode_model(std::string_view bytes, const std::string& file) {
+  try {
+    return decode_content(unseal(bytes).content);
+  } catch (const CannotRead& e) {
+    throw CannotRead(file.empty() ? fmt::format("cannot read the model: {}", e.what())
+                                  : fmt::format("cannot read '{}': {}", file, e.what()),
+                     file, e.where());
+  }
+}
+
+void save_model(const Model& model, const std::string& path, bool overwrite) {
+  write_file(path, encode_model(model), overwrite);
+}
+
+Model load_model(const std::string& path) {
+  return decode_model(read_file(path), path);
+}
+
+bool is_model_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  char start[8];
+  return in.read(start, sizeof start) && has_signature({start, sizeof start});
+}
+
+}  // namespace retalho

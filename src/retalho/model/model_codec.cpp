@@ -1,0 +1,63 @@
+#include "retalho/model/model_codec.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "retalho/core/error.h"
+#include "retalho/model/terrain_codec.h"
+
+namespace retalho {
+namespace {
+
+namespace fb = model_file;
+
+/// FlatBuffers reads numbers in place: they must lie on their own alignment.
+class AlignedView {
+ public:
+  explicit AlignedView(std::string_view bytes) : bytes_(bytes) {
+    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(std::uint64_t) == 0) return;
+    copy_.resize((bytes.size() + 7) / 8);
+    bytes.copy(reinterpret_cast<char*>(copy_.data()), bytes.size());
+    bytes_ = {reinterpret_cast<const char*>(copy_.data()), bytes.size()};
+  }
+  const std::uint8_t* data() const { return reinterpret_cast<const std::uint8_t*>(bytes_.data()); }
+  std::size_t size() const { return bytes_.size(); }
+
+ private:
+  std::string_view bytes_;
+  std::vector<std::uint64_t> copy_;
+};
+
+}  // namespace
+
+std::string encode_content(const Model& model) {
+  flatbuffers::FlatBufferBuilder builder(1 << 16);
+  const auto created_by = builder.CreateString("retalho " RETALHO_VERSION);
+  const auto surface = encode_terrain(builder, std::get<Terrain>(model));
+  const auto root = fb::CreateModelFile(builder, created_by, fb::Surface::TerrainSurface, surface.Union());
+  fb::FinishModelFileBuffer(builder, root);
+  return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
+}
+
+Model decode_content(std::string_view content) {
+  const AlignedView bytes(content);
+  // Under 12 bytes there is no room for a root, an identifier and a table; the verifier itself wants to be asked less.
+  if (bytes.size() < 12 || bytes.size() >= FLATBUFFERS_MAX_BUFFER_SIZE)
+    throw CannotRead(fmt::format("a content of {} bytes", bytes.size()), {}, "content");
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (!fb::VerifyModelFileBuffer(verifier))
+    throw CannotRead("the content is not a Retalho model (its FlatBuffer is broken)", {}, "content");
+  const fb::ModelFile& file = *fb::GetModelFile(bytes.data());
+  switch (file.surface_type()) {
+    case fb::Surface::TerrainSurface:
+      return decode_terrain(*file.surface_as_TerrainSurface());
+    default:
+      throw CannotRead(fmt::format("it holds a kind of surface ({}) that this Retalho does not know: update Retalho",
+                                   static_cast<int>(file.surface_type())),
+                       {}, "surface");
+  }
+}
+
+}  // namespace retalho

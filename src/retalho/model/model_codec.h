@@ -1,0 +1,18 @@
+// The content of a model file, without its envelope: what a damaged file that has got past the checksum meets.
+// Internal to the room; the tests feed it with anything.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "retalho/model/model.h"
+
+namespace retalho {
+
+std::string encode_content(const Model& model);
+
+/// Throws CannotRead for everything that is not a model without a fault; never crashes, never reads beyond `content`,
+/// never allocates more than its length can stand for.
+Model decode_content(std::string_view content);
+
+}  // namespace retalho
