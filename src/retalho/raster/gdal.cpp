@@ -123,6 +123,17 @@ std::string describe_crs(const OGRSpatialReference* crs, double latitude, Georef
   return crs_title(*crs);
 }
 
+std::string describe_crs_text(const std::string& crs, double latitude, Georef& georef,
+                              std::vector<std::string>& remarks) {
+  register_gdal();
+  const GdalMessages messages;
+  OGRSpatialReference known;
+  if (known.SetFromUserInput(crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
+    throw BadInput(fmt::format("'{}' is not a CRS: give a code as EPSG:25832, or WKT ({})", crs.substr(0, 80),
+                               messages.words("unknown")));
+  return describe_crs(&known, latitude, georef, remarks);
+}
+
 std::string name_for_message(const std::string& path) {
   return path.find("<VRTDataset") != std::string::npos ? "the VRT given as text" : path;
 }

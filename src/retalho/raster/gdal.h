@@ -47,6 +47,10 @@ using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
 std::string describe_crs(const OGRSpatialReference* crs, double latitude, Georef& georef,
                          std::vector<std::string>& remarks);
 
+/// The same for a CRS as text: WKT, "EPSG:25832", a PROJ string. Throws BadInput when it is none.
+std::string describe_crs_text(const std::string& crs, double latitude, Georef& georef,
+                              std::vector<std::string>& remarks);
+
 /// `path` for a message: itself, or "the VRT given as text" when it is one.
 std::string name_for_message(const std::string& path);
 
