@@ -11,9 +11,9 @@ namespace retalho {
 
 struct SurfaceOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
-  GradientKind gradients = GradientKind::quadratic;  ///< how the vertex gradients are estimated
+  GradientKind gradients = GradientKind::normals;                     ///< how the vertex gradients are estimated
   CrossDerivative cross_derivative = CrossDerivative::perpendicular;  ///< Clough-Tocher only
-  std::optional<std::vector<Vec2>> given;  ///< gradients for GradientKind::given, one a vertex
+  std::optional<std::vector<Vec2>> given = {};  ///< gradients for GradientKind::given, one a vertex
 };
 
 /// A surface on any TIN (scattered points): `georef` says where its local coordinates lie.

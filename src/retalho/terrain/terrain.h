@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "retalho/bernstein/triangle.h"
@@ -26,6 +28,10 @@ struct GridDomain {
   int columns = 0, rows = 0;
   double cell_width = 1, cell_height = 1;  ///< local units
   Mask valid;                              ///< empty: every cell is valid
+
+  /// Does the cell nearest to `p` hold data? A point half way between two cells belongs to the eastern or southern one.
+  /// True everywhere for a model of scattered points.
+  bool has_data(Vec2 p) const;
 };
 
 struct Terrain {
@@ -33,12 +39,13 @@ struct Terrain {
   CrossDerivative cross_derivative = CrossDerivative::perpendicular;
   GradientKind gradient_kind = GradientKind::none;
   Georef georef;
-  GridDomain grid;                 ///< columns == 0: made from scattered points, valid on the triangulation
+  GridDomain grid;  ///< columns == 0: made from scattered points, valid on the triangulation
   Tin tin;
-  std::vector<Vec2> gradients;     ///< one a vertex (dz/dx, dz/dy in local units); empty for linear
-  std::vector<double> edge_split;  ///< Powell-Sabin: lambda of each edge from its lower-index end, by build_edges' order
+  std::vector<Vec2> gradients;  ///< one a vertex (dz/dx, dz/dy in local units); empty for linear
+  std::vector<double>
+      edge_split;  ///< Powell-Sabin: lambda of each edge from its lower-index end, by build_edges' order
   std::vector<std::uint8_t> edge_fallback;  ///< cubic Clough-Tocher: 1 where the edge falls back to perpendicular
-  double tolerance = 0;            ///< the max_error asked for; 0: none
+  double tolerance = 0;                     ///< the max_error asked for; 0: none
 };
 
 /// One polynomial piece: a triangle and its ordinates (the first ordinate_count(degree) of `ordinates`).
@@ -54,11 +61,17 @@ int patches_per_triangle(SurfaceKind kind);
 /// Powell-Sabin, Clough-Tocher or linear pieces of one triangle of the TIN. `edges` is build_edges(terrain.tin).
 /// Neighbouring triangles get the same ordinates on a shared edge, to the last bit.
 /// Writes patches_per_triangle(kind) pieces into `out` and returns how many.
-int triangle_patches(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle, std::array<TerrainPatch, 6>& out);
+int triangle_patches(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle,
+                     std::array<TerrainPatch, 6>& out);
 
 /// "powell-sabin" and so on, as the program spells them.
 const char* surface_name(SurfaceKind kind);
 const char* gradient_name(GradientKind kind);
+const char* cross_derivative_name(CrossDerivative rule);
+/// The inverse: nullopt for a word that is no such name.
+std::optional<SurfaceKind> parse_surface(std::string_view name);
+std::optional<GradientKind> parse_gradients(std::string_view name);
+std::optional<CrossDerivative> parse_cross_derivative(std::string_view name);
 
 /// How many numbers a plain table of the model stores: x, y and the coefficients (1 or 3) of each vertex.
 std::size_t number_count(const Terrain& terrain);

@@ -1,0 +1,107 @@
+#include "retalho/terrain/evaluate.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "retalho/core/error.h"
+#include "retalho/core/parallel.h"
+#include "retalho/terrain/evaluator_parts.h"
+
+namespace retalho {
+namespace {
+
+constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();
+
+template <class Element, class Make>
+void fill(std::vector<Element>& elements, std::size_t count, const Context& context, const Make& make) {
+  elements.resize(count);
+  parallel_chunks(count, 4096, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) elements[t] = make(static_cast<std::uint32_t>(t));
+  });
+}
+
+bool any_void(const GridDomain& grid) {
+  return grid.columns > 0 && !grid.valid.empty() &&
+         grid.valid.count() < static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+}
+
+}  // namespace
+
+TerrainEvaluator::Parts::Parts(const Terrain& model, const Context& context)
+    : terrain(model), edges(build_edges(model.tin)), locator(model.tin, context), has_voids(any_void(model.grid)) {
+  const std::size_t count = model.tin.triangle_count();
+  switch (model.kind) {
+    case SurfaceKind::powell_sabin:
+      fill(powell_sabin, count, context, [&](std::uint32_t t) { return powell_sabin_element(model, edges, t); });
+      break;
+    case SurfaceKind::clough_tocher:
+      fill(clough_tocher, count, context, [&](std::uint32_t t) { return clough_tocher_element(model, edges, t); });
+      break;
+    case SurfaceKind::linear:
+      fill(linear, count, context, [&](std::uint32_t t) {
+        const auto& v = model.tin.triangles[t];
+        return LinearElement{{model.tin.heights[v[0]], model.tin.heights[v[1]], model.tin.heights[v[2]]}};
+      });
+      break;
+  }
+}
+
+TerrainEvaluator::TerrainEvaluator(const Terrain& terrain, const Context& context)
+    : parts_(std::make_unique<Parts>(terrain, context)) {}
+TerrainEvaluator::~TerrainEvaluator() = default;
+TerrainEvaluator::TerrainEvaluator(TerrainEvaluator&&) noexcept = default;
+TerrainEvaluator& TerrainEvaluator::operator=(TerrainEvaluator&&) noexcept = default;
+
+const Terrain& TerrainEvaluator::terrain() const {
+  return parts_->terrain;
+}
+const EdgeTable& TerrainEvaluator::edges() const {
+  return parts_->edges;
+}
+
+std::uint32_t TerrainEvaluator::locate(Vec2 p, std::uint32_t hint) const {
+  return parts_->locator.locate(p, hint);
+}
+
+bool TerrainEvaluator::valid(Vec2 p) const {
+  return parts_->cell_valid(p) && locate(p) != kNone;
+}
+
+double TerrainEvaluator::value(Vec2 p) const {
+  const std::uint32_t t = parts_->cell_valid(p) ? locate(p) : kNone;
+  if (t == kNone) return kNoData;
+  const Barycentric at = MacroTriangle(parts_->terrain.tin, t).barycentric(p);
+  return parts_->with_elements([&](const auto& elements) { return element_value(elements[t], at); });
+}
+
+std::optional<Jet> TerrainEvaluator::jet(Vec2 p) const {
+  if (!parts_->cell_valid(p)) return std::nullopt;
+  const std::uint32_t t = locate(p);
+  if (t == kNone) return std::nullopt;
+  return jet_in(t, p);
+}
+
+Jet TerrainEvaluator::jet_in(std::uint32_t triangle, Vec2 p) const {
+  return parts_->with_elements([&](const auto& elements) {
+    return element_jet(elements[triangle], MacroTriangle(parts_->terrain.tin, triangle), p);
+  });
+}
+
+void TerrainEvaluator::values(std::span<const Vec2> points, std::span<double> out, const Context& context) const {
+  if (out.size() != points.size())
+    throw UsageError(fmt::format("values: {} points, but room for {} heights", points.size(), out.size()));
+  const Tin& tin = parts_->terrain.tin;
+  const PointLocator& locator = parts_->locator;
+  parts_->with_elements([&](const auto& elements) {
+    parallel_chunks(points.size(), 16384, context, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Vec2 p = points[k];
+        const std::uint32_t t = parts_->cell_valid(p) ? locator.locate(p) : kNone;
+        out[k] = t == kNone ? kNoData : element_value(elements[t], MacroTriangle(tin, t).barycentric(p));
+      }
+    });
+  });
+}
+
+}  // namespace retalho

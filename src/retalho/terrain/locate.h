@@ -1,0 +1,42 @@
+// Which triangle of a TIN holds a point: an exact-sign walk, started from a grid of hints.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "retalho/core/context.h"
+#include "retalho/tin/tin.h"
+
+namespace retalho {
+
+/// Refers to the TIN, which must outlive it. Safe to use from several threads at once.
+///
+/// A triangle holds its border. Of the triangles that hold a point the one with the highest number owns it, so the
+/// answer never depends on where the walk came from. Cost: two or three steps from the grid on a TIN of even density,
+/// O(sqrt(n)) from a far hint. Where the outline is not convex, a point that the walk loses costs O(n).
+class PointLocator {
+ public:
+  explicit PointLocator(const Tin& tin, const Context& context = {});
+
+  /// kNone: outside, or not a number.
+  std::uint32_t locate(Vec2 p, std::uint32_t hint = kNone) const;
+
+ private:
+  struct Step {
+    std::uint32_t triangle;
+    bool inside;
+  };
+  Step walk(Vec2 p, std::uint32_t from) const;
+  std::uint32_t owner(Vec2 p, std::uint32_t triangle) const;
+  std::uint32_t search_all(Vec2 p) const;
+  bool outline_is_convex() const;
+
+  const Tin& tin_;
+  Vec2 low_, high_;
+  bool convex_ = false;
+  int columns_ = 1, rows_ = 1;
+  double per_x_ = 0, per_y_ = 0;      // grid cells a unit
+  std::vector<std::uint32_t> hints_;  // a triangle near the centre of each grid cell
+};
+
+}  // namespace retalho

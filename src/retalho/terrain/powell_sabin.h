@@ -1,0 +1,80 @@
+// Powell-Sabin on one triangle: six quadratic pieces around the incentre, C1 with the neighbours
+// (docs/mathematics.md, "Powell-Sabin"; Powell and Sabin 1977; the paper's eqs. 7-27 with its slips put right).
+//
+// Everything is written in the barycentric coordinates of the whole triangle, so that a point finds its piece, and its
+// place in the piece, without any division by the area of a piece.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "retalho/bernstein/triangle.h"
+#include "retalho/core/context.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho {
+
+/// Where a point lies inside a split triangle.
+struct PiecePoint {
+  int piece = 0;
+  Barycentric at;  ///< in the piece
+};
+
+/// Edge k lies opposite corner k and runs from corner k + 1 to corner k + 2 (indices modulo 3). Pieces 2k and 2k + 1
+/// are (centre, corner k + 1, split k) and (centre, split k, corner k + 2).
+struct PowellSabinElement {
+  static constexpr int kDegree = 2;
+  static constexpr int kPieces = 6;
+
+  std::array<double, 3> weight;  ///< barycentric coordinates of the incentre, all > 0
+  std::array<double, 3> split;   ///< of edge k: fraction from corner k + 1, in (0, 1)
+  double centre;                 ///< ordinates from here on
+  std::array<double, 3> corner;
+  std::array<double, 3> spoke;        ///< between the centre and corner k
+  std::array<double, 3> split_value;  ///< at the split of edge k
+  std::array<double, 3> rib;          ///< between the centre and the split of edge k
+  std::array<double, 3> first;        ///< on edge k between corner k + 1 and the split
+  std::array<double, 3> second;       ///< on edge k between the split and corner k + 2
+
+  PiecePoint find(Barycentric macro) const;
+  TriangleNet<2> net(int piece) const;
+  /// Gradients of the piece's barycentric coordinates, from those of the whole triangle.
+  TriangleFrame frame(int piece, const TriangleFrame& macro) const;
+};
+
+PowellSabinElement powell_sabin_element(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle);
+
+/// The point where the line through the incentres of its two triangles meets each edge, as a fraction from the edge's
+/// lower-index end; 1/2 on the border. Always strictly inside the edge.
+std::vector<double> powell_sabin_splits(const Tin& tin, const EdgeTable& edges, const Context& context = {});
+
+/// Incentre of a triangle in its barycentric coordinates.
+std::array<double, 3> incentre_weights(Vec2 a, Vec2 b, Vec2 c);
+
+inline PiecePoint PowellSabinElement::find(Barycentric macro) const {
+  const std::array<double, 3> u{macro.r, macro.s, macro.t};
+  // The centre's share of the point, seen from each edge; the smallest belongs to the edge whose pieces hold the point.
+  const std::array<double, 3> share{u[0] / weight[0], u[1] / weight[1], u[2] / weight[2]};
+  std::size_t k = 0;
+  if (share[1] < share[k]) k = 1;
+  if (share[2] < share[k]) k = 2;
+  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  const double centre_part = share[k];
+  const double ui = u[i] - centre_part * weight[i], uj = u[j] - centre_part * weight[j];
+  if (uj * (1 - split[k]) <= ui * split[k]) {
+    const double part = uj / split[k];
+    return {static_cast<int>(2 * k), {centre_part, ui - part * (1 - split[k]), part}};
+  }
+  const double part = ui / (1 - split[k]);
+  return {static_cast<int>(2 * k + 1), {centre_part, part, uj - part * split[k]}};
+}
+
+inline TriangleNet<2> PowellSabinElement::net(int piece) const {
+  const auto k = static_cast<std::size_t>(piece / 2);
+  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  if (piece % 2 == 0) return {centre, spoke[i], rib[k], corner[i], first[k], split_value[k]};
+  return {centre, rib[k], spoke[j], split_value[k], second[k], corner[j]};
+}
+
+}  // namespace retalho
