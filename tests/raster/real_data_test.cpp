@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "raster/support.h"
 #include "retalho/raster/io.h"
+#include "support/support.h"
 
 namespace retalho {
 namespace {
@@ -20,10 +20,9 @@ class RealGrid : public testing::TestWithParam<Known> {};
 
 TEST_P(RealGrid, ReadsAsStated) {
   const Known& known = GetParam();
-  const auto path = testing_support::data_folder() / "dem" / known.file;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  RETALHO_DATA_FILE(path, std::string("dem/") + known.file);
   ReadNotes notes;
-  const Raster raster = read_raster(path.string(), {}, &notes);
+  const Raster raster = read_raster(path, {}, &notes);
   const RasterSummary summary = summarize(raster);
   EXPECT_EQ(raster.columns, known.columns);
   EXPECT_EQ(raster.rows, known.rows);
@@ -63,10 +62,9 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(RealGrid, AsciiAndBinaryPgmAreTheSame) {
-  const auto folder = testing_support::data_folder() / "dem";
-  if (!std::filesystem::exists(folder / "crater.pgm")) GTEST_SKIP() << "no " << folder / "crater.pgm";
-  const Raster ascii = read_raster((folder / "crater.pgm").string()),
-               binary = read_raster((folder / "crater_p5.pgm").string());
+  RETALHO_DATA_FILE(text_file, "dem/crater.pgm");
+  RETALHO_DATA_FILE(binary_file, "dem/crater_p5.pgm");
+  const Raster ascii = read_raster(text_file), binary = read_raster(binary_file);
   EXPECT_EQ(ascii.heights, binary.heights);
   EXPECT_EQ(ascii.cell_width, 1);
   EXPECT_EQ(binary.cell_width, 1);

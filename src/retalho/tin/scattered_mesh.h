@@ -56,8 +56,15 @@ class ScatteredMesh {
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> star_;                    // scratch: cavity, then the new star
   std::vector<BorderEdge> border_;                     // scratch
-  std::vector<std::array<std::uint32_t, 2>> pending_;  // scratch: triangle * 4 + edge still to be looked at
+  std::vector<std::array<std::uint32_t, 2>> pending_;  // scratch: triangle, edge still to be looked at
   std::size_t removed_ = 0;
 };
+
+struct Places;
+
+/// The mesh's triangles without ghosts in canonical order (scattered.h). `vertex` gives the number of each place
+/// (kNone: not a vertex), `vertices` how many there are; empty: every place is the vertex of its own number.
+Tin to_tin(const ScatteredMesh& mesh, const Places& places, const std::vector<std::uint32_t>& vertex,
+           std::size_t vertices);
 
 }  // namespace retalho
