@@ -7,7 +7,8 @@
 namespace retalho {
 
 struct TerrainMeshOptions {
-  double tolerance = 0;  ///< largest vertical distance to the surface, height units; 0: a thousandth of the height range
+  double tolerance =
+      0;  ///< largest vertical distance to the surface, height units; 0: a thousandth of the height range
 };
 
 /// Each patch is cut as finely as its ordinates' second differences ask; shared edges are cut by a rule that depends on

@@ -1,0 +1,52 @@
+// The mesh formats, one file each, behind write_mesh and read_mesh. Internal to the room.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "retalho/mesh/mesh.h"
+
+namespace retalho {
+
+/// A file being written front to back, in large blocks. Throws CannotWrite when the disk is full.
+class ByteSink {
+ public:
+  /// `path` is written; errors speak of `name`.
+  ByteSink(const std::string& path, std::string name);
+  ~ByteSink();
+  ByteSink(const ByteSink&) = delete;
+  ByteSink& operator=(const ByteSink&) = delete;
+
+  void text(std::string_view words);
+  void number(double value);  ///< shortest text that reads back to the same double
+  void number(std::uint64_t value);
+  template <typename T>
+  void binary(T value) {  ///< little-endian, as every machine that this is built for
+    if (used_ + sizeof value > kBlock) flush();
+    __builtin_memcpy(block_ + used_, &value, sizeof value);
+    used_ += sizeof value;
+  }
+  void close();
+
+ private:
+  void flush();
+  [[noreturn]] void fail();
+  static constexpr std::size_t kBlock = std::size_t{1} << 18;
+  std::string name_;
+  std::FILE* file_;
+  char* block_;
+  std::size_t used_ = 0;
+};
+
+void write_ply(const TriangleMesh& mesh, ByteSink& out);
+void write_obj(const TriangleMesh& mesh, ByteSink& out);
+void write_stl(const TriangleMesh& mesh, ByteSink& out);
+void write_glb(const TriangleMesh& mesh, ByteSink& out);
+
+TriangleMesh read_ply(std::string_view bytes, const std::string& path);
+TriangleMesh read_obj(std::string_view bytes, const std::string& path);
+
+}  // namespace retalho

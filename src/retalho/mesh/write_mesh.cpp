@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "retalho/core/atomic_file.h"
+#include "retalho/core/error.h"
+#include "retalho/mesh/formats.h"
+
+namespace retalho {
+namespace {
+
+using Writer = void (*)(const TriangleMesh&, ByteSink&);
+struct Format {
+  const char* extension;
+  Writer write;
+};
+constexpr Format kFormats[] = {{".ply", write_ply}, {".obj", write_obj}, {".stl", write_stl}, {".glb", write_glb}};
+
+std::string extension(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
+
+const Format* find_format(const std::string& path) {
+  const std::string e = extension(path);
+  const Format* const found =
+      std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& f) { return e == f.extension; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+void check_arrays(const TriangleMesh& mesh, const std::string& path) {
+  const std::size_t n = mesh.positions.size();
+  if (!mesh.normals.empty() && mesh.normals.size() != n)
+    throw BadInput(fmt::format("the mesh has {} normals for {} vertices", mesh.normals.size(), n), path);
+  if (!mesh.texture.empty() && mesh.texture.size() != n)
+    throw BadInput(fmt::format("the mesh has {} texture coordinates for {} vertices", mesh.texture.size(), n), path);
+  for (std::size_t i = 0; i < n; ++i)
+    if (!std::isfinite(mesh.positions[i].x + mesh.positions[i].y + mesh.positions[i].z))
+      throw BadInput(fmt::format("vertex {} is not finite", i), path);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (v >= n) throw BadInput(fmt::format("triangle {} names vertex {} of {}", t, v, n), path);
+}
+
+}  // namespace
+
+bool is_mesh_name(const std::string& path) {
+  return find_format(path) != nullptr;
+}
+
+void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite) {
+  const Format* const format = find_format(path);
+  if (!format)
+    throw UsageError(
+        fmt::format("'{}' does not end in .ply, .obj, .stl or .glb: the name tells the format of the mesh", path),
+        path);
+  check_arrays(mesh, path);
+  AtomicFile file(path, overwrite);
+  ByteSink out(file.temporary(), path);
+  format->write(mesh, out);
+  out.close();
+  file.commit();
+}
+
+TriangleMesh read_mesh(const std::string& path) {
+  const std::string e = extension(path);
+  if (e != ".ply" && e != ".obj")
+    throw CannotRead(fmt::format("cannot read '{}' as a mesh: .ply and .obj are read", path), path);
+  const std::string bytes = read_file(path);
+  return e == ".ply" ? read_ply(bytes, path) : read_obj(bytes, path);
+}
+
+}  // namespace retalho
