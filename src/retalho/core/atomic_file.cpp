@@ -17,7 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string reason() { return std::strerror(errno); }
+std::string reason() {
+  return std::strerror(errno);
+}
 
 /// Flushes a file or a folder to disk. Returns false with errno set.
 bool sync_path(const std::string& path, int flags) {
@@ -47,7 +49,9 @@ AtomicFile::AtomicFile(std::string path, bool overwrite) : path_(std::move(path)
     throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", path_), path_);
   if (::access(folder.c_str(), W_OK) != 0)
     throw CannotWrite(fmt::format("cannot write into the folder '{}': {}", folder.string(), reason()), path_);
-  temporary_ = (folder / fmt::format(".{}.{}.tmp{}", final_path.stem().string(), ::getpid(), final_path.extension().string())).string();
+  temporary_ =
+      (folder / fmt::format(".{}.{}.tmp{}", final_path.stem().string(), ::getpid(), final_path.extension().string()))
+          .string();
 }
 
 AtomicFile::~AtomicFile() {
@@ -55,8 +59,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  if (!sync_path(temporary_, O_RDONLY))
-    throw CannotWrite(fmt::format("cannot write '{}': {}", path_, reason()), path_);
+  if (!sync_path(temporary_, O_RDONLY)) throw CannotWrite(fmt::format("cannot write '{}': {}", path_, reason()), path_);
   // link() refuses an existing name, so that two runs without --overwrite cannot replace each other's result.
   if (!overwrite_ && ::link(temporary_.c_str(), path_.c_str()) == 0) {
     ::unlink(temporary_.c_str());

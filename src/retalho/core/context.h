@@ -12,8 +12,8 @@
 namespace retalho {
 
 struct Context {
-  int threads = 0;                             ///< Worker threads; 0: all that the machine has. Results never depend on it.
-  const std::atomic<bool>* cancel = nullptr;   ///< Set by the caller (a signal handler, a closed tab) to stop the work.
+  int threads = 0;  ///< Worker threads; 0: all that the machine has. Results never depend on it.
+  const std::atomic<bool>* cancel = nullptr;  ///< Set by the caller (a signal handler, a closed tab) to stop the work.
   /// Called from the calling thread with the stage's name and the fraction done in [0, 1].
   std::function<void(std::string_view stage, double fraction)> progress = {};
 

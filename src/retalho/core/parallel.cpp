@@ -1,11 +1,39 @@
 #include "retalho/core/parallel.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
 
 namespace retalho {
+namespace {
+
+/// The arena of that many threads, made once: making one a call costs milliseconds and memory. oneTBB also has to be
+/// told that more threads than cores are wanted, or it says so on standard error and runs fewer.
+tbb::task_arena& arena_of(int threads) {
+  struct Pool {
+    std::mutex mutex;
+    std::map<int, std::unique_ptr<tbb::task_arena>> arenas;
+    std::unique_ptr<tbb::global_control> control;
+    int allowed = tbb::this_task_arena::max_concurrency();
+  };
+  static Pool pool;
+  const std::lock_guard lock(pool.mutex);
+  if (threads > pool.allowed) {
+    pool.control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                         static_cast<std::size_t>(threads));
+    pool.allowed = threads;
+  }
+  std::unique_ptr<tbb::task_arena>& arena = pool.arenas[threads];
+  if (!arena) arena = std::make_unique<tbb::task_arena>(threads);
+  return *arena;
+}
+
+}  // namespace
 
 int thread_count(const Context& context) {
   return context.threads > 0 ? context.threads : std::max(1, tbb::this_task_arena::max_concurrency());
@@ -25,8 +53,7 @@ void parallel_chunks(std::size_t count, std::size_t grain, const Context& contex
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
     return;
   }
-  tbb::task_arena arena(threads);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, run); });
+  arena_of(threads).execute([&] { tbb::parallel_for(std::size_t{0}, chunks, run); });
 }
 
 }  // namespace retalho

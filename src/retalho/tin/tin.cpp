@@ -9,7 +9,9 @@
 namespace retalho {
 namespace {
 
-std::uint64_t directed(std::uint32_t from, std::uint32_t to) { return (std::uint64_t{from} << 32) | to; }
+std::uint64_t directed(std::uint32_t from, std::uint32_t to) {
+  return (std::uint64_t{from} << 32) | to;
+}
 
 }  // namespace
 
@@ -27,7 +29,8 @@ EdgeTable build_edges(const Tin& tin) {
       table.of_triangle[t][k] = edge;
       if (other == kNone) continue;
       for (std::size_t m = 0; m < 3; ++m)
-        if (tin.triangles[other][(m + 1) % 3] == b && tin.triangles[other][(m + 2) % 3] == a) table.of_triangle[other][m] = edge;
+        if (tin.triangles[other][(m + 1) % 3] == b && tin.triangles[other][(m + 2) % 3] == a)
+          table.of_triangle[other][m] = edge;
     }
   }
   return table;
@@ -40,12 +43,15 @@ void build_neighbors(Tin& tin) {
   for (std::uint32_t t = 0; t < tin.triangles.size(); ++t) {
     const auto& v = tin.triangles[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      if (v[k] >= tin.points.size()) throw BadInput(fmt::format("triangle {} names vertex {} of {}", t, v[k], tin.points.size()));
+      if (v[k] >= tin.points.size())
+        throw BadInput(fmt::format("triangle {} names vertex {} of {}", t, v[k], tin.points.size()));
       if (v[k] == v[(k + 1) % 3]) throw BadInput(fmt::format("triangle {} names vertex {} twice", t, v[k]));
-      const auto [place, fresh] = sides.emplace(directed(v[(k + 1) % 3], v[(k + 2) % 3]), t * 3 + static_cast<std::uint32_t>(k));
+      const auto [place, fresh] =
+          sides.emplace(directed(v[(k + 1) % 3], v[(k + 2) % 3]), t * 3 + static_cast<std::uint32_t>(k));
       if (!fresh)
-        throw BadInput(fmt::format("triangles {} and {} run along the edge {}-{} in the same direction: the mesh is not a surface",
-                                   place->second / 3, t, v[(k + 1) % 3], v[(k + 2) % 3]));
+        throw BadInput(
+            fmt::format("triangles {} and {} run along the edge {}-{} in the same direction: the mesh is not a surface",
+                        place->second / 3, t, v[(k + 1) % 3], v[(k + 2) % 3]));
     }
   }
   for (std::uint32_t t = 0; t < tin.triangles.size(); ++t)
