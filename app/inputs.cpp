@@ -1,0 +1,117 @@
+#include "inputs.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "retalho/core/error.h"
+#include "retalho/model/model.h"
+
+namespace retalho::app {
+namespace {
+
+/// The number at the start of `text`, which must be finite; moves `text` behind it. nullopt when there is none.
+std::optional<double> take_number(const char*& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text, &end);
+  if (end == text || !std::isfinite(value)) return std::nullopt;
+  text = end;
+  return value;
+}
+
+}  // namespace
+
+void add_grid_flags(CLI::App& command, GridFlags& flags) {
+  command.add_option("--band", flags.band, "Band of the raster, from 1")->type_name("N")->check(CLI::PositiveNumber);
+  command.add_option("--nodata", flags.nodata, "Heights equal to this are void too")->type_name("V");
+}
+
+Raster load_grid(const Program& program, const std::string& path, const GridFlags& flags, RasterSummary& summary,
+                 const Context& context) {
+  ReadNotes notes;
+  const Stopwatch watch;
+  Raster raster = read_raster(path, {flags.band, flags.nodata}, &notes, context);
+  summary = summarize(raster);
+  program.say(describe(path, raster, summary, notes));
+  for (const std::string& remark : notes.remarks) program.say("  " + remark);
+  program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
+  return raster;
+}
+
+PointCloud load_points(const Program& program, const std::string& path, const PointOptions& options,
+                       const Context& context) {
+  PointNotes notes;
+  const Stopwatch watch;
+  PointCloud cloud = read_points(path, options, &notes, context);
+  program.say(fmt::format("{}: {}", path, retalho::describe(cloud, notes, summarize(cloud))));
+  for (const std::string& remark : notes.remarks) program.say("  " + remark);
+  program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
+  return cloud;
+}
+
+Terrain load_terrain(const std::string& path) {
+  if (std::filesystem::exists(path) && !is_model_file(path))
+    throw CannotRead(fmt::format("'{}' is not a model file of retalho: make one with `retalho fit`", path), path);
+  Model model = load_model(path);
+  if (Terrain* terrain = std::get_if<Terrain>(&model)) return std::move(*terrain);
+  throw BadInput(fmt::format("'{}' holds no terrain: this command works on models made by `retalho fit`", path), path);
+}
+
+std::string crs_name(const std::string& wkt) {
+  const std::size_t open = wkt.find('"');
+  const std::size_t close = open == std::string::npos ? open : wkt.find('"', open + 1);
+  return close == std::string::npos ? std::string() : wkt.substr(open + 1, close - open - 1);
+}
+
+std::string describe(const std::string& path, const Raster& raster, const RasterSummary& summary,
+                     const ReadNotes& notes) {
+  std::string line = fmt::format("{}: {} x {} cells of {:.6g} x {:.6g} {}", path, raster.columns, raster.rows,
+                                 raster.cell_width, raster.cell_height, raster.georef.unit);
+  line += notes.crs_name.empty() ? ", no CRS" : ", " + notes.crs_name;
+  line += fmt::format(", {} valid", summary.valid);
+  if (summary.valid > 0) line += fmt::format(", heights {:.8g} to {:.8g}", summary.minimum, summary.maximum);
+  if (!raster.height_unit.empty()) line += " " + raster.height_unit;
+  return line;
+}
+
+Vec2 parse_point(const std::string& option, const std::string& text) {
+  const char* at = text.c_str();
+  const std::optional<double> x = take_number(at);
+  const bool comma = *at == ',';
+  if (comma) ++at;
+  const std::optional<double> y = take_number(at);
+  if (!x || !comma || !y || *at != '\0')
+    throw UsageError(fmt::format("{}: '{}' is not X,Y: two numbers with a comma and no space", option, text), {},
+                     option);
+  return {*x, *y};
+}
+
+std::pair<int, int> parse_size(const std::string& option, const std::string& text) {
+  const char* at = text.c_str();
+  const std::optional<double> width = take_number(at);
+  const bool cross = *at == 'x' || *at == 'X';
+  if (cross) ++at;
+  const std::optional<double> height = take_number(at);
+  const auto good = [](std::optional<double> v) { return v && *v >= 16 && *v <= 20000 && *v == std::floor(*v); };
+  if (!good(width) || !cross || !good(height) || *at != '\0')
+    throw UsageError(fmt::format("{}: '{}' is not WxH in pixels, such as 1200x800 (16 to 20000)", option, text), {},
+                     option);
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+double parse_ratio(const std::string& option, const std::string& text) {
+  const char* at = text.c_str();
+  std::optional<double> value = take_number(at);
+  if (value && *at == '%') {
+    *value /= 100;
+    ++at;
+  }
+  if (!value || *at != '\0' || !(*value > 0) || *value > 1)
+    throw UsageError(fmt::format("{}: '{}' is not a share of the valid cells, such as 1% or 0.01", option, text), {},
+                     option);
+  return *value;
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,46 @@
+// Reading what the commands take, with the one line on standard error that says what was read.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program.h"
+#include "retalho/cloud/cloud.h"
+#include "retalho/raster/io.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho::app {
+
+/// Options of the commands that read an elevation grid.
+struct GridFlags {
+  int band = 1;
+  std::optional<double> nodata;
+};
+void add_grid_flags(CLI::App& command, GridFlags& flags);
+
+/// An elevation grid; its summary line and the reader's remarks go to standard error.
+Raster load_grid(const Program& program, const std::string& path, const GridFlags& flags, RasterSummary& summary,
+                 const Context& context);
+/// The same for scattered points.
+PointCloud load_points(const Program& program, const std::string& path, const PointOptions& options,
+                       const Context& context);
+/// A terrain model. Throws BadInput when the model holds another kind of surface.
+Terrain load_terrain(const std::string& path);
+
+/// "N41E001.hgt: 1201 x 1201 cells of 69.2 x 92.7 metre, EPSG:4326 WGS 84, 1441881 valid, heights -20 to 1204".
+std::string describe(const std::string& path, const Raster& raster, const RasterSummary& summary,
+                     const ReadNotes& notes);
+
+/// The name of a CRS, out of its WKT; empty when there is none.
+std::string crs_name(const std::string& wkt);
+
+/// "X,Y" as two finite numbers. Throws UsageError.
+Vec2 parse_point(const std::string& option, const std::string& text);
+/// "800x600" as two whole numbers from 16 to 20,000. Throws UsageError.
+std::pair<int, int> parse_size(const std::string& option, const std::string& text);
+/// "1%" or "0.01", above 0 and at most 1. Throws UsageError.
+double parse_ratio(const std::string& option, const std::string& text);
+
+}  // namespace retalho::app
