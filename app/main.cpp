@@ -98,7 +98,7 @@ int run(int argc, char** argv) {
       root.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
       const auto chosen = root.get_subcommands();
-      program.print(chosen.empty() ? root.help() : chosen.front()->help());
+      program.print(chosen.empty() ? root.help() : chosen.front()->help("retalho"));
     } catch (const CLI::CallForVersion& version) {
       program.print(std::string(version.what()) + "\n");
     } catch (const CLI::ParseError& error) {
