@@ -1,0 +1,29 @@
+#include "retalho/tin/refine.h"
+
+#include "retalho/tin/greedy_heap.h"
+
+namespace retalho {
+
+GridTin refine_grid(const Raster& raster, const RefineOptions& options, const Context& context) {
+  return refine_grid_by_heap(raster, options, context);
+}
+
+Tin to_tin(const GridTin& grid_tin, const Raster& raster) {
+  Tin tin;
+  tin.points.reserve(grid_tin.cells.size());
+  tin.heights.reserve(grid_tin.cells.size());
+  for (const std::uint32_t cell : grid_tin.cells) {
+    const int column = static_cast<int>(cell & 0xffffU), row = static_cast<int>(cell >> 16);
+    tin.points.push_back(raster.centre(column, row));
+    tin.heights.push_back(raster.at(column, row));
+  }
+  tin.triangles = grid_tin.triangles;
+  tin.neighbors = grid_tin.neighbors;
+  return tin;
+}
+
+Tin refine_tin(const Raster& raster, const RefineOptions& options, const Context& context) {
+  return to_tin(refine_grid(raster, options, context), raster);
+}
+
+}  // namespace retalho
