@@ -29,9 +29,9 @@ struct PointCloud {
 };
 
 struct PointOptions {
-  std::string height_field;  ///< vector layers: the numeric attribute that holds the height; empty: the geometry's z
-  std::string layer;         ///< vector files with several layers: which one
-  std::string crs;           ///< for formats without one: "EPSG:25832", WKT ...; empty: none
+  std::string height_field = {};  ///< vector layers: the numeric attribute with the height; empty: the geometry's z
+  std::string layer = {};         ///< vector files with several layers: which one
+  std::string crs = {};           ///< for formats without one: "EPSG:25832", WKT ...; empty: none
 };
 
 /// What was read and how.

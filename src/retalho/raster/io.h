@@ -11,20 +11,20 @@
 namespace retalho {
 
 struct ReadOptions {
-  int band = 1;                  ///< 1-based
-  std::optional<double> nodata;  ///< heights equal to this are void too, besides the file's own no-data
+  int band = 1;                       ///< 1-based
+  std::optional<double> nodata = {};  ///< heights equal to this are void too, besides the file's own no-data
 };
 
 /// What was read and how, for the line that the program prints and for `info`.
 struct ReadNotes {
-  std::string driver;                 ///< "GTiff", "PGM (ASCII)"
-  std::string data_type;              ///< "Int16", "Float32" ...
-  std::optional<double> nodata;       ///< the file's no-data value, if any
-  double scale = 1, offset = 0;       ///< applied to the stored values
-  std::string crs_name;               ///< "EPSG:32611 WGS 84 / UTM zone 11N", or empty
+  std::string driver;            ///< "GTiff", "PGM (ASCII)"
+  std::string data_type;         ///< "Int16", "Float32" ...
+  std::optional<double> nodata;  ///< the file's no-data value, if any
+  double scale = 1, offset = 0;  ///< applied to the stored values
+  std::string crs_name;          ///< "EPSG:32611 WGS 84 / UTM zone 11N", or empty
   int bands = 1;
-  std::size_t infinite = 0;           ///< infinite heights made void
-  std::vector<std::string> remarks;   ///< words for the user: "geographic CRS: distances are metres at latitude 48.5"
+  std::size_t infinite = 0;          ///< infinite heights made void
+  std::vector<std::string> remarks;  ///< words for the user: "geographic CRS: distances are metres at latitude 48.5"
 };
 
 /// Reads one band. Rows come north first and columns west first, whatever the file's order. `path` may be anything
@@ -33,16 +33,23 @@ struct ReadNotes {
 /// memory there is before it allocates.
 /// Throws CannotRead (missing, unknown format, truncated), BadInput (rotated or sheared geotransform, zero cell size,
 /// complex data, no such band, absurd size).
-Raster read_raster(const std::string& path, const ReadOptions& options = {}, ReadNotes* notes = nullptr, const Context& context = {});
+Raster read_raster(const std::string& path, const ReadOptions& options = {}, ReadNotes* notes = nullptr,
+                   const Context& context = {});
+
+/// One line for the user: size, cell size and units, CRS, valid cells, range.
+/// "344 x 403 cells of 76.2 x 92.5 metre, EPSG:4326 WGS 84, 138632 valid (100 %), heights 231 to 1077"
+std::string describe(const Raster& raster, const ReadNotes& notes, const RasterSummary& summary);
 
 struct WriteOptions {
-  std::string driver;      ///< GDAL short name; empty: by the file's extension (.tif, .asc, .img ...)
-  std::vector<std::string> creation_options;  ///< as GDAL's -co; empty: sensible ones for GeoTIFF (DEFLATE, predictor, tiles)
+  std::string driver = {};  ///< GDAL short name; empty: by the file's extension (.tif, .asc, .img ...)
+  /// As GDAL's -co; empty: sensible ones for GeoTIFF (DEFLATE, predictor, tiles).
+  std::vector<std::string> creation_options = {};
   bool overwrite = false;
 };
 
 /// Writes one float (or double) band with CRS, geotransform and no-data, atomically. Void cells become NaN where the
 /// driver can, else -9999. Throws CannotWrite.
-void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options = {}, const Context& context = {});
+void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options = {},
+                  const Context& context = {});
 
 }  // namespace retalho
