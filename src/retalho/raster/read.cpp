@@ -191,12 +191,14 @@ void by_block_rows(GDALRasterBand& band, std::size_t bytes_a_cell, const Context
   const std::size_t fit = std::max<std::size_t>(1, kBuffer / (static_cast<std::size_t>(columns) * bytes_a_cell));
   int step = static_cast<int>(std::min<std::size_t>(fit, static_cast<std::size_t>(rows)));
   if (step > block_height) step -= step % block_height;
-  for (int row = 0; row < rows; row += step) {
+  for (int row = 0, count = 0; row < rows; row += count) {
     context.check();
-    body(row, std::min(step, rows - row));
-    context.report("read", static_cast<double>(std::min(rows, row + step)) / rows);
+    count = std::min(step, rows - row);
+    if (step < block_height) count = std::min(count, block_height - row % block_height);
+    body(row, count);
+    context.report("read", static_cast<double>(row + count) / rows);
     // Blocks that were read are not needed again; without this GDAL's cache may hold a second copy of the grid.
-    if ((row + step) % block_height == 0) band.FlushCache(false);
+    if ((row + count) % block_height == 0) band.FlushCache(false);
   }
 }
 
@@ -286,6 +288,7 @@ class BandReader {
   /// Any other values: through a buffer, float as long as that is exact.
   template <class Stored>
   std::variant<std::vector<float>, std::vector<double>> read_wide(GDALDataType type) {
+    const bool scaled = notes_.scale != 1 || notes_.offset != 0;
     HeightSink sink(cells_);
     std::vector<Stored> buffer;
     std::size_t rounded = 0;
@@ -294,7 +297,8 @@ class BandReader {
       fetch(band_, row, rows, buffer.data(), type);
       fetch_mask(row, rows);
       for (std::size_t k = 0; k < buffer.size(); ++k) {
-        double h = static_cast<double>(buffer[k]) * notes_.scale + notes_.offset;
+        double h = static_cast<double>(buffer[k]);
+        if (scaled) h = h * notes_.scale + notes_.offset;
         if (is_void(buffer[k]) || masked(k) || (rule_.height && h == *rule_.height)) {
           h = static_cast<double>(kVoid);
         } else if (std::isinf(h)) {

@@ -40,6 +40,7 @@ GDALDriver& choose_driver(const std::string& path, const std::string& wanted) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (int k = 0; k < manager.GetDriverCount() && !extension.empty(); ++k) {
     GDALDriver& driver = *manager.GetDriver(k);
+    if (std::string(driver.GetDescription()) == "VRT") continue;  // names other files, holds no heights
     if (!can(driver, GDAL_DCAP_RASTER) || !(can(driver, GDAL_DCAP_CREATE) || can(driver, GDAL_DCAP_CREATECOPY)))
       continue;
     const char* known = driver.GetMetadataItem(GDAL_DMD_EXTENSIONS);
@@ -141,6 +142,23 @@ void make(GDALDriver& driver, const std::string& file, const Raster& raster, con
   const DatasetPtr copy(driver.CreateCopy(file.c_str(), source.get(), TRUE, creation, nullptr, nullptr));
 }
 
+/// Some formats have no place for a no-data value: voids would come back as heights.
+void check_voids(const Raster& raster, const std::string& file, const std::string& path) {
+  const bool has_voids = std::visit(
+      [](const auto& heights) {
+        return std::any_of(heights.begin(), heights.end(), [](auto h) { return std::isnan(h); });
+      },
+      raster.heights);
+  if (!has_voids) return;
+  const GdalMessages messages;
+  const DatasetPtr dataset(static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_ReadOnly)));
+  int has_nodata = 0;
+  if (dataset && dataset->GetRasterCount() > 0) dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
+  if (!has_nodata)
+    throw CannotWrite(
+        fmt::format("'{}': this format has no no-data value, and the raster has void cells: use .tif", path), path);
+}
+
 /// Files that a driver made beside `temporary` (.prj, .hdr, .aux.xml), as what follows the temporary's stem.
 std::set<std::string> sidecars(const fs::path& temporary) {
   std::set<std::string> found;
@@ -180,12 +198,18 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
   std::set<std::string> made;
   try {
     const GdalMessages messages;
+    const CPLStringList given = creation_options(driver, raster, options);
+    if (!GDALValidateCreationOptions(&driver, given.List()))
+      throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
+                                    messages.words("a creation option is wrong")),
+                        path);
     make(driver, file.temporary(), raster, options, messages, context);
     made = sidecars(temporary);
     if (messages.failed() || !fs::exists(temporary, ec))
       throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
                                     messages.words("no reason was given")),
                         path);
+    check_voids(raster, file.temporary(), path);
     for (const std::string& tail : made)
       if (!options.overwrite && fs::exists(beside(target, tail), ec))
         throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", beside(target, tail).string()),
