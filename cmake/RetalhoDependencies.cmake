@@ -7,6 +7,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)          # render/curve_*: PDF and PNG of curves
+pkg_check_modules(MUPARSERX REQUIRED IMPORTED_TARGET muparserx)  # curve/expression: f(x, y) as text
 if(RETALHO_SUITESPARSE)
   find_library(CHOLMOD_LIBRARY cholmod)
   find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
