@@ -103,6 +103,7 @@ const std::vector<Library>& libraries() {
       {"zlib", std::regex("^zlib\\.h$"), {"render", "raster", "mesh"}},
       {"FreeType", std::regex("^ft2build\\.h$|^freetype/.*"), {"render"}},
       {"Cairo", std::regex("^cairo[a-z-]*\\.h$"), {"render", "level"}},
+      {"muParserX", std::regex("^muparserx/.*"), {"curve"}},
   };
   return table;
 }
