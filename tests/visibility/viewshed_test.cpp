@@ -57,11 +57,16 @@ Raster random_terrain(std::mt19937& rng, bool voids) {
   return make(columns, rows, [&](int x, int y) -> float {
     if (void_percent > 0 && pick(0, 99) < void_percent) return kVoid;
     switch (kind) {
-      case 0: return static_cast<float>(pick(0, range));
-      case 1: return static_cast<float>(ax * x + ay * y);
-      case 2: return static_cast<float>(pick(0, 9) == 0 ? range : 0);
-      case 3: return static_cast<float>(std::lround(10 * std::sin(0.3 * x) * std::cos(0.2 * y)));
-      default: return static_cast<float>(pick(0, 1000000)) * 1e-5F;
+      case 0:
+        return static_cast<float>(pick(0, range));
+      case 1:
+        return static_cast<float>(ax * x + ay * y);
+      case 2:
+        return static_cast<float>(pick(0, 9) == 0 ? range : 0);
+      case 3:
+        return static_cast<float>(std::lround(10 * std::sin(0.3 * x) * std::cos(0.2 * y)));
+      default:
+        return static_cast<float>(pick(0, 1000000)) * 1e-5F;
     }
   });
 }
@@ -83,13 +88,14 @@ TEST(Viewshed, EqualsTheSightLineInEveryCell) {
     if (round % 7 == 0) options.radius = pick(1, 20);
     if (round % 11 == 0) options.earth_curvature = true;
     const auto fast = viewshed(r, o, options), slow = twin(r, o, options);
-    ASSERT_EQ(differences(fast, slow), 0U) << "round " << round << " of seed " << seed << ": " << r.columns << " x " << r.rows;
+    ASSERT_EQ(differences(fast, slow), 0U)
+        << "round " << round << " of seed " << seed << ": " << r.columns << " x " << r.rows;
     for (const auto v : fast) seen += v;
     cells += r.cells();
     ++checked;
   }
   EXPECT_GT(checked, 1000U);
-  EXPECT_GT(seen, cells / 20);      // not degenerate: a fair share is seen
+  EXPECT_GT(seen, cells / 20);       // not degenerate: a fair share is seen
   EXPECT_LT(seen, cells * 19 / 20);  // and a fair share is not
 }
 
@@ -155,7 +161,9 @@ TEST(Viewshed, TurnsWithTheGrid) {
 
 TEST(Viewshed, SameFromAnyNumberOfThreads) {
   std::mt19937 rng(17);
-  const Raster r = make(200, 180, [&](int x, int y) { return 20 * std::sin(x * 0.1) + 15 * std::cos(y * 0.07) + std::uniform_real_distribution<double>(0, 2)(rng); });
+  const Raster r = make(200, 180, [&](int x, int y) {
+    return 20 * std::sin(x * 0.1) + 15 * std::cos(y * 0.07) + std::uniform_real_distribution<double>(0, 2)(rng);
+  });
   Context one, many;
   one.threads = 1;
   many.threads = 7;

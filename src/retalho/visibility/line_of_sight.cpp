@@ -28,11 +28,14 @@ struct Ground {
 
 }  // namespace
 
-SightLine line_of_sight(const Raster& raster, const Observer& observer, int target_column, int target_row, const SightOptions& options) {
+SightLine line_of_sight(const Raster& raster, const Observer& observer, int target_column, int target_row,
+                        const SightOptions& options) {
   const auto check = [&](int column, int row, const char* what) {
     if (column < 0 || row < 0 || column >= raster.columns || row >= raster.rows)
-      throw BadInput(fmt::format("the {}'s cell ({}, {}) is outside of the grid of {} x {} cells", what, column, row, raster.columns, raster.rows));
-    if (!raster.valid(column, row)) throw BadInput(fmt::format("the {}'s cell ({}, {}) holds no data", what, column, row));
+      throw BadInput(fmt::format("the {}'s cell ({}, {}) is outside of the grid of {} x {} cells", what, column, row,
+                                 raster.columns, raster.rows));
+    if (!raster.valid(column, row))
+      throw BadInput(fmt::format("the {}'s cell ({}, {}) holds no data", what, column, row));
   };
   check(observer.column, observer.row, "observer");
   check(target_column, target_row, "target");
@@ -47,7 +50,8 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
 
   SightLine line;
   line.clearance = std::numeric_limits<double>::infinity();
-  line.fresnel_clear = options.frequency > 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+  line.fresnel_clear =
+      options.frequency > 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
   line.blocked_at = std::numeric_limits<double>::quiet_NaN();
   line.visible = true;
 
@@ -58,7 +62,9 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
     p.at = raster.centre(observer.column + t * dc, observer.row + t * dr);
     p.ground = height;
     p.sight = eye + t * (aim - eye);
-    if (options.frequency > 0) p.fresnel = std::sqrt(std::max(0.0, kLightSpeed / options.frequency * p.distance * (length - p.distance) / std::max(length, 1e-300)));
+    if (options.frequency > 0)
+      p.fresnel = std::sqrt(std::max(
+          0.0, kLightSpeed / options.frequency * p.distance * (length - p.distance) / std::max(length, 1e-300)));
     if (inner) {
       const bool nothing = std::isnan(height);
       // Slopes are compared, as the viewshed does: ground and sight line at the same place seen from the eye.
@@ -69,7 +75,8 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
       }
       if (!nothing) {
         line.clearance = std::min(line.clearance, p.sight - height);
-        if (options.frequency > 0 && p.fresnel > 0) line.fresnel_clear = std::min(line.fresnel_clear, (p.sight - height) / p.fresnel);
+        if (options.frequency > 0 && p.fresnel > 0)
+          line.fresnel_clear = std::min(line.fresnel_clear, (p.sight - height) / p.fresnel);
       }
     }
     line.profile.push_back(p);
@@ -86,7 +93,9 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
       const int whole = static_cast<int>(std::int64_t{i} * nr / nc), rest = static_cast<int>(std::int64_t{i} * nr % nc);
       const int column = observer.column + sc * i, row = observer.row + sr * whole;
       const double f = static_cast<double>(rest) / nc;
-      const double height = rest == 0 ? ground.at(column, row) : ground.at(column, row) + f * (ground.at(column, row + sr) - ground.at(column, row));
+      const double height = rest == 0
+                                ? ground.at(column, row)
+                                : ground.at(column, row) + f * (ground.at(column, row + sr) - ground.at(column, row));
       add(static_cast<double>(i) / nc, height, true);
       if (left == right) ++j;
       ++i;
@@ -94,7 +103,9 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
       const int whole = static_cast<int>(std::int64_t{j} * nc / nr), rest = static_cast<int>(std::int64_t{j} * nc % nr);
       const int column = observer.column + sc * whole, row = observer.row + sr * j;
       const double f = static_cast<double>(rest) / nr;
-      const double height = rest == 0 ? ground.at(column, row) : ground.at(column, row) + f * (ground.at(column + sc, row) - ground.at(column, row));
+      const double height = rest == 0
+                                ? ground.at(column, row)
+                                : ground.at(column, row) + f * (ground.at(column + sc, row) - ground.at(column, row));
       add(static_cast<double>(j) / nr, height, true);
       ++j;
     }

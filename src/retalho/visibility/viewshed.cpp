@@ -48,7 +48,9 @@ std::array<Octant, 8> octants(const Raster& raster, const Observer& at) {
 class Field {
  public:
   Field(const Raster& raster, const ViewshedOptions& options)
-      : width_(raster.cell_width), height_(raster.cell_height), radius2_(options.radius > 0 ? options.radius * options.radius : -1) {
+      : width_(raster.cell_width),
+        height_(raster.cell_height),
+        radius2_(options.radius > 0 ? options.radius * options.radius : -1) {
     drop_ = options.earth_curvature ? (1 - options.refraction) / (2 * kEarthRadius) : 0;
     const double span = options.azimuth_to - options.azimuth_from;
     all_round_ = span >= 360;
@@ -71,7 +73,9 @@ class Field {
   }
   /// Rings beyond this along an axis of that step are out of the radius.
   int rings(int reach, double step) const {
-    return radius2_ < 0 ? reach : static_cast<int>(std::min<double>(reach, std::floor(std::sqrt(radius2_) / step * (1 + 1e-12))));
+    return radius2_ < 0
+               ? reach
+               : static_cast<int>(std::min<double>(reach, std::floor(std::sqrt(radius2_) / step * (1 + 1e-12))));
   }
   double width() const { return width_; }
   double height() const { return height_; }
@@ -136,7 +140,8 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
       const bool edge = valid && !std::isnan(over_next);
       const double h_next = over_next / k;
       const double column_right = edge ? h : missing, column_end = edge ? h_next : missing;
-      const auto crossing = static_cast<std::size_t>(j) < before.size() ? before[static_cast<std::size_t>(j)] : std::numeric_limits<double>::quiet_NaN();
+      const auto crossing = static_cast<std::size_t>(j) < before.size() ? before[static_cast<std::size_t>(j)]
+                                                                        : std::numeric_limits<double>::quiet_NaN();
       knot.right = column_right;
       right_of_previous = column_end;
       if (j >= 1 && j <= k - 1) {
@@ -150,7 +155,8 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
           // At its far end the edge is the vertex (k - 1, j): a void edge blocks up to there, not the vertex itself.
           const double vertex = std::isnan(crossing) ? missing : crossing / (k - 1);
           const bool diagonal = j == k - 1;
-          ring.push_back({end_s, cross_end, diagonal ? vertex : std::max(vertex, column_there), diagonal ? kNothing : column_there});
+          ring.push_back({end_s, cross_end, diagonal ? vertex : std::max(vertex, column_there),
+                          diagonal ? kNothing : column_there});
           continue;
         }
       }
@@ -164,14 +170,16 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
 
 /// The octants of one observer, each with its own places in the result: they may run at once.
 template <class Sink>
-void sweep(const Raster& raster, const Observer& observer, const ViewshedOptions& options, const Context& context, const Sink& sink) {
+void sweep(const Raster& raster, const Observer& observer, const ViewshedOptions& options, const Context& context,
+           const Sink& sink) {
   const Field field(raster, options);
   const std::array<Octant, 8> all = octants(raster, observer);
   std::visit(
       [&](const auto& z) {
         parallel_chunks(8, 1, context, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i)
-            if (all[i].reach_v > 0 || all[i].owns_axis) sweep_octant(raster, z, observer, all[i], field, options.voids, context, sink);
+            if (all[i].reach_v > 0 || all[i].owns_axis)
+              sweep_octant(raster, z, observer, all[i], field, options.voids, context, sink);
         });
       },
       raster.heights);
@@ -179,15 +187,18 @@ void sweep(const Raster& raster, const Observer& observer, const ViewshedOptions
 
 void check_observer(const Raster& raster, const Observer& o) {
   if (o.column < 0 || o.row < 0 || o.column >= raster.columns || o.row >= raster.rows)
-    throw BadInput(fmt::format("the observer's cell ({}, {}) is outside of the grid of {} x {} cells", o.column, o.row, raster.columns, raster.rows));
+    throw BadInput(fmt::format("the observer's cell ({}, {}) is outside of the grid of {} x {} cells", o.column, o.row,
+                               raster.columns, raster.rows));
   if (!raster.valid(o.column, o.row))
-    throw BadInput(fmt::format("the observer's cell ({}, {}) holds no data: move the observer to a valid cell", o.column, o.row));
+    throw BadInput(
+        fmt::format("the observer's cell ({}, {}) holds no data: move the observer to a valid cell", o.column, o.row));
   if (!std::isfinite(o.height)) throw BadInput("the observer's height is not a number");
 }
 
 /// Marks what one observer sees.
 template <class Mark>
-void mark_visible(const Raster& raster, const Observer& observer, const ViewshedOptions& options, const Context& context, const Mark& mark) {
+void mark_visible(const Raster& raster, const Observer& observer, const ViewshedOptions& options,
+                  const Context& context, const Mark& mark) {
   check_observer(raster, observer);
   const Field field(raster, options);
   const double low = std::tan(std::clamp(options.lowest, -89.999999, 89.999999) * std::numbers::pi / 180);
@@ -197,7 +208,8 @@ void mark_visible(const Raster& raster, const Observer& observer, const Viewshed
   sweep(raster, observer, options, context, [&](int column, int row, double needed, double over, int k) {
     if (needed > options.target_height + kTieSlope * k) return;
     if (limited) {
-      const double slope = (over + options.target_height) / std::sqrt(field.distance2(column - observer.column, row - observer.row));
+      const double slope =
+          (over + options.target_height) / std::sqrt(field.distance2(column - observer.column, row - observer.row));
       if (slope < low || slope > high) return;
     }
     mark(raster.index(column, row));
@@ -208,24 +220,28 @@ void mark_visible(const Raster& raster, const Observer& observer, const Viewshed
 
 Observer observer_at(const Raster& raster, Vec2 crs, double height) {
   const Vec2 local = raster.georef.to_local(crs);
-  const double column = std::floor(local.x / raster.cell_width + 0.5), row = std::floor(-local.y / raster.cell_height + 0.5);
+  const double column = std::floor(local.x / raster.cell_width + 0.5),
+               row = std::floor(-local.y / raster.cell_height + 0.5);
   if (!(column >= 0 && row >= 0 && column < raster.columns && row < raster.rows)) {
-    const Vec2 a = raster.georef.to_crs(raster.centre(-0.5, raster.rows - 0.5)), b = raster.georef.to_crs(raster.centre(raster.columns - 0.5, -0.5));
-    throw BadInput(fmt::format("the observer at {}, {} is outside of the grid (x {} to {}, y {} to {})", crs.x, crs.y, a.x, b.x, a.y, b.y));
+    const Vec2 a = raster.georef.to_crs(raster.centre(-0.5, raster.rows - 0.5)),
+               b = raster.georef.to_crs(raster.centre(raster.columns - 0.5, -0.5));
+    throw BadInput(fmt::format("the observer at {}, {} is outside of the grid (x {} to {}, y {} to {})", crs.x, crs.y,
+                               a.x, b.x, a.y, b.y));
   }
   const Observer observer{static_cast<int>(column), static_cast<int>(row), height};
   check_observer(raster, observer);
   return observer;
 }
 
-std::vector<std::uint8_t> viewshed(const Raster& raster, const Observer& observer, const ViewshedOptions& options, const Context& context) {
+std::vector<std::uint8_t> viewshed(const Raster& raster, const Observer& observer, const ViewshedOptions& options,
+                                   const Context& context) {
   std::vector<std::uint8_t> seen(raster.cells(), 0);
   mark_visible(raster, observer, options, context, [&](std::size_t cell) { seen[cell] = 1; });
   return seen;
 }
 
-std::vector<std::uint32_t> observer_counts(const Raster& raster, std::span<const Observer> observers, const ViewshedOptions& options,
-                                           const Context& context) {
+std::vector<std::uint32_t> observer_counts(const Raster& raster, std::span<const Observer> observers,
+                                           const ViewshedOptions& options, const Context& context) {
   std::vector<std::uint32_t> counts(raster.cells(), 0);
   for (std::size_t i = 0; i < observers.size(); ++i) {
     mark_visible(raster, observers[i], options, context, [&](std::size_t cell) { ++counts[cell]; });
@@ -234,8 +250,8 @@ std::vector<std::uint32_t> observer_counts(const Raster& raster, std::span<const
   return counts;
 }
 
-std::vector<float> needed_heights(const Raster& raster, std::span<const Observer> observers, const ViewshedOptions& options,
-                                  const Context& context) {
+std::vector<float> needed_heights(const Raster& raster, std::span<const Observer> observers,
+                                  const ViewshedOptions& options, const Context& context) {
   std::vector<float> needed(raster.cells(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < observers.size(); ++i) {
     check_observer(raster, observers[i]);
