@@ -34,8 +34,9 @@ void emit(std::vector<Knot>& out, const Knot& knot) {
     const Knot& middle = out.back();
     if (middle.left == middle.at && middle.at == middle.right) {
       const Knot& first = out[out.size() - 2];
-      const double line = first.right + (knot.left - first.right) * ((middle.s - first.s) / (knot.s - first.s));
-      if (std::abs(line - middle.at) <= 4e-16 * std::abs(middle.at)) out.pop_back();
+      const double span = knot.s - first.s;
+      const double off = (middle.at - first.right) * span - (knot.left - first.right) * (middle.s - first.s);
+      if (std::abs(off) <= 4e-16 * std::abs(middle.at) * span) out.pop_back();
     }
   }
   out.push_back(knot);

@@ -5,6 +5,7 @@
 // both sides and its own value, so that voids may cut edges away.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -37,6 +38,17 @@ class HorizonReader {
     const Knot& a = k[next_ - 1];
     return a.right + (b.left - a.right) * ((s - a.s) / (b.s - a.s));
   }
+
+  /// The first knot at or beyond the last direction asked for.
+  std::size_t position() const { return next_; }
+  /// The lowest limit around the last direction asked for, where `value` is the elevation there: below it on a spike.
+  double lowest(double s, double value) const {
+    if (next_ >= knots_->size() || (*knots_)[next_].s != s) return value;
+    const Knot& k = (*knots_)[next_];
+    return std::min(k.left, k.right);
+  }
+  /// The first knot beyond `s`, the last direction asked for.
+  std::size_t beyond(double s) const { return next_ < knots_->size() && (*knots_)[next_].s == s ? next_ + 1 : next_; }
 
  private:
   const std::vector<Knot>* knots_;

@@ -102,7 +102,8 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
   };
 
   std::vector<Knot> horizon{{0, kNothing, kNothing, kNothing}, {1, kNothing, kNothing, kNothing}}, ring, merged;
-  std::vector<double> before, now;  // ground of the ring before and of this one, height over the eye
+  std::vector<std::uint8_t> hidden;  // the interval after cell j is under the horizon
+  std::vector<double> before, now;   // ground of the ring before and of this one, height over the eye
   before.push_back(static_cast<double>(z[raster.index(observer.column, observer.row)]) - eye);
   for (int k = 1; k <= rings; ++k) {
     if (k % 64 == 0) context.check();
@@ -110,10 +111,20 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
     now.resize(static_cast<std::size_t>(last) + 1);
     for (int j = 0; j <= last; ++j) now[static_cast<std::size_t>(j)] = elevation(k, j);
 
+    // Where the horizon is straight between two cells that both lie under it, so do the edges there: no merging.
+    hidden.assign(static_cast<std::size_t>(last) + 1, 0);
     HorizonReader reader(horizon);
+    bool under_before = false;
+    std::size_t knot_before = 0;
     for (int j = 0; j <= last; ++j) {
       const double over = now[static_cast<std::size_t>(j)];
       const double h = reader.at(static_cast<double>(j) / k);
+      const bool under = over < (reader.lowest(static_cast<double>(j) / k, h) - kTieSlope) * k;
+      if (under && under_before && reader.position() == knot_before)
+        hidden[static_cast<std::size_t>(j) - 1] =
+            voids == VoidRule::transparent || (j <= k - 1 && !std::isnan(before[static_cast<std::size_t>(j) - 1]));
+      under_before = under;
+      knot_before = reader.beyond(static_cast<double>(j) / k);
       if (std::isnan(over) || (j == 0 && !octant.owns_axis) || (j == k && !octant.owns_diagonal)) continue;
       const int dc = k * octant.du_column + j * octant.dv_column, dr = k * octant.du_row + j * octant.dv_row;
       if (field.holds(dc, dr)) sink(observer.column + dc, observer.row + dr, h * k - over, over, k);
@@ -123,6 +134,8 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
     ring.clear();
     double right_of_previous = kNothing;  // value that the interval before ends with
     for (int j = 0; j <= last; ++j) {
+      const bool hidden_after = hidden[static_cast<std::size_t>(j)] != 0;
+      if (hidden_after && j > 0 && hidden[static_cast<std::size_t>(j) - 1] != 0) continue;
       const double s = static_cast<double>(j) / k, over = now[static_cast<std::size_t>(j)];
       const bool valid = !std::isnan(over);
       const double h = over / k;
@@ -135,6 +148,11 @@ void sweep_octant(const Raster& raster, const std::vector<Height>& z, const Obse
       if (j == last) {
         ring.push_back(knot);
         break;
+      }
+      if (hidden_after) {
+        right_of_previous = kNothing;
+        ring.push_back(knot);
+        continue;
       }
       const double over_next = now[static_cast<std::size_t>(j) + 1];
       const bool edge = valid && !std::isnan(over_next);
