@@ -29,6 +29,8 @@ struct CloughTocherElement {
   std::array<double, 3> face;    ///< inside piece k: the only freedom of the element
 
   PiecePoint find(Barycentric macro) const;
+  /// From the whole triangle's coordinates, of a point or of a direction, to the piece's.
+  Barycentric within(int piece, Barycentric macro) const;
   TriangleNet<3> net(int piece) const;
   /// Gradients of the piece's barycentric coordinates, from those of the whole triangle.
   TriangleFrame frame(int piece, const TriangleFrame& macro) const;
@@ -46,6 +48,12 @@ inline PiecePoint CloughTocherElement::find(Barycentric macro) const {
   if (u[1] < u[k]) k = 1;
   if (u[2] < u[k]) k = 2;
   return {static_cast<int>(k), {u[(k + 1) % 3] - u[k], u[(k + 2) % 3] - u[k], 3 * u[k]}};
+}
+
+inline Barycentric CloughTocherElement::within(int piece, Barycentric macro) const {
+  const std::array<double, 3> u{macro.r, macro.s, macro.t};
+  const auto k = static_cast<std::size_t>(piece);
+  return {u[(k + 1) % 3] - u[k], u[(k + 2) % 3] - u[k], 3 * u[k]};
 }
 
 inline TriangleNet<3> CloughTocherElement::net(int piece) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "retalho/terrain/clough_tocher.h"
@@ -19,8 +20,58 @@ struct LinearElement {
   std::array<double, 3> corner;
 
   PiecePoint find(Barycentric macro) const { return {0, macro}; }
+  Barycentric within(int, Barycentric macro) const { return macro; }
   TriangleNet<1> net(int) const { return corner; }
   TriangleFrame frame(int, const TriangleFrame& macro) const { return macro; }
+};
+
+/// From a point to the triangle's barycentric coordinates. A triangle whose area rounds to nothing counts as its first
+/// corner, so that no division by zero reaches a height.
+class MacroTriangle {
+ public:
+  MacroTriangle() = default;
+  MacroTriangle(const Tin& tin, std::uint32_t triangle) {
+    const auto& v = tin.triangles[triangle];
+    origin_ = tin.points[v[0]];
+    const Vec2 ab = tin.points[v[1]] - origin_, ac = tin.points[v[2]] - origin_;
+    const double area2 = cross(ab, ac);
+    if (!(area2 > 0)) return;
+    grad_s_ = Vec2{ac.y, -ac.x} / area2;
+    grad_t_ = Vec2{-ab.y, ab.x} / area2;
+    margin_ = 64 * 1.11e-16 * (std::abs(ab.x * ac.y) + std::abs(ab.y * ac.x)) / area2;
+  }
+
+  Barycentric barycentric(Vec2 p) const {
+    const Vec2 d = p - origin_;
+    const double s = dot(grad_s_, d), t = dot(grad_t_, d);
+    return {1 - s - t, s, t};
+  }
+  /// Are these coordinates, computed by `barycentric`, those of a point strictly inside, beyond all rounding?
+  bool surely_inside(Barycentric u) const { return u.r > margin_ && u.s > margin_ && u.t > margin_; }
+  /// Only the gradients are filled.
+  TriangleFrame frame() const {
+    TriangleFrame f;
+    f.grad_r = -(grad_s_ + grad_t_);
+    f.grad_s = grad_s_;
+    f.grad_t = grad_t_;
+    return f;
+  }
+  /// How the coordinates change with a step along x.
+  Barycentric along_x(double step) const {
+    const double s = step * grad_s_.x, t = step * grad_t_.x;
+    return {-(s + t), s, t};
+  }
+
+ private:
+  Vec2 origin_, grad_s_, grad_t_;
+  double margin_ = 1;
+};
+
+/// All that a query in one triangle touches, in one place.
+template <class Element>
+struct TriangleRecord {
+  MacroTriangle triangle;
+  Element element;
 };
 
 struct TerrainEvaluator::Parts {
@@ -31,13 +82,13 @@ struct TerrainEvaluator::Parts {
   PointLocator locator;
   bool has_voids = false;  ///< the grid has cells without data
   // One of these is filled, by the terrain's kind.
-  std::vector<LinearElement> linear;
-  std::vector<PowellSabinElement> powell_sabin;
-  std::vector<CloughTocherElement> clough_tocher;
+  std::vector<TriangleRecord<LinearElement>> linear;
+  std::vector<TriangleRecord<PowellSabinElement>> powell_sabin;
+  std::vector<TriangleRecord<CloughTocherElement>> clough_tocher;
 
-  /// Calls `use` with the elements of the terrain's kind.
+  /// Calls `use` with the records of the terrain's kind.
   template <class Use>
-  decltype(auto) with_elements(const Use& use) const {
+  decltype(auto) with_records(const Use& use) const {
     switch (terrain.kind) {
       case SurfaceKind::powell_sabin:
         return use(powell_sabin);
@@ -51,45 +102,6 @@ struct TerrainEvaluator::Parts {
   bool cell_valid(Vec2 p) const { return !has_voids || terrain.grid.has_data(p); }
 };
 
-/// Gradients and corner of a triangle's barycentric coordinates. A triangle whose area rounds to nothing counts as its
-/// own centroid, so that no division by zero reaches a height.
-class MacroTriangle {
- public:
-  MacroTriangle(const Tin& tin, std::uint32_t triangle) {
-    const auto& v = tin.triangles[triangle];
-    const Vec2 a = tin.points[v[0]], b = tin.points[v[1]], c = tin.points[v[2]];
-    origin_ = a;
-    const Vec2 ab = b - a, ac = c - a;
-    const double area2 = cross(ab, ac);
-    if (area2 > 0) {
-      grad_s_ = Vec2{ac.y, -ac.x} / area2;
-      grad_t_ = Vec2{-ab.y, ab.x} / area2;
-    } else {
-      s_at_origin_ = t_at_origin_ = 1.0 / 3;
-    }
-  }
-
-  Barycentric barycentric(Vec2 p) const {
-    const Vec2 d = p - origin_;
-    const double s = s_at_origin_ + dot(grad_s_, d), t = t_at_origin_ + dot(grad_t_, d);
-    return {1 - s - t, s, t};
-  }
-  /// Only the gradients are filled.
-  TriangleFrame frame() const {
-    TriangleFrame f;
-    f.grad_r = -(grad_s_ + grad_t_);
-    f.grad_s = grad_s_;
-    f.grad_t = grad_t_;
-    return f;
-  }
-  /// How the coordinates change with one unit of x.
-  Barycentric along_x() const { return {-(grad_s_.x + grad_t_.x), grad_s_.x, grad_t_.x}; }
-
- private:
-  Vec2 origin_, grad_s_, grad_t_;
-  double s_at_origin_ = 0, t_at_origin_ = 0;
-};
-
 template <class Element>
 double element_value(const Element& element, Barycentric macro) {
   const PiecePoint place = element.find(macro);
@@ -97,10 +109,10 @@ double element_value(const Element& element, Barycentric macro) {
 }
 
 template <class Element>
-Jet element_jet(const Element& element, const MacroTriangle& triangle, Vec2 p) {
-  const PiecePoint place = element.find(triangle.barycentric(p));
-  return evaluate_jet<Element::kDegree>(element.net(place.piece), element.frame(place.piece, triangle.frame()),
-                                        place.at);
+Jet element_jet(const TriangleRecord<Element>& record, Vec2 p) {
+  const PiecePoint place = record.element.find(record.triangle.barycentric(p));
+  return evaluate_jet<Element::kDegree>(record.element.net(place.piece),
+                                        record.element.frame(place.piece, record.triangle.frame()), place.at);
 }
 
 }  // namespace retalho

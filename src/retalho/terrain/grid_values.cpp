@@ -9,6 +9,7 @@
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/evaluator_parts.h"
+#include "retalho/terrain/row_plan.h"
 #include "retalho/terrain/row_spans.h"
 
 namespace retalho {
@@ -21,48 +22,78 @@ struct Target {
   RowGrid grid;
   std::span<double> out;
   std::span<Vec2> gradients;
+
+  std::size_t cell(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(column);
+  }
 };
 
-/// For each band of rows the triangles that may touch it, ascending.
+Corners corners_of(const Tin& tin, std::uint32_t triangle) {
+  const auto& v = tin.triangles[triangle];
+  return {tin.points[v[0]], tin.points[v[1]], tin.points[v[2]]};
+}
+
+/// For each band of rows the triangles that touch it, ascending.
 struct Bands {
   std::vector<std::size_t> begin;
   std::vector<std::uint32_t> triangles;
 };
 
-Bands sort_into_bands(const Tin& tin, const RowGrid& grid) {
-  const auto bands = static_cast<std::size_t>((grid.rows + kBand - 1) / kBand);
-  Bands result;
-  result.begin.assign(bands + 1, 0);
+Bands sort_into_bands(const Tin& tin, const RowGrid& grid, const Context& context) {
+  std::vector<RowRange> ranges(tin.triangle_count());
+  parallel_chunks(ranges.size(), 16384, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      ranges[t] = row_range(corners_of(tin, static_cast<std::uint32_t>(t)), grid, 1 / grid.step.y);
+  });
+  Bands bands;
+  bands.begin.assign(static_cast<std::size_t>((grid.rows + kBand - 1) / kBand) + 1, 0);
   const auto each = [&](const auto& use) {
-    for (std::uint32_t t = 0; t < tin.triangles.size(); ++t) {
-      const RowRange rows = row_range(tin, t, grid);
-      if (rows.first > rows.last) continue;
-      for (int b = rows.first / kBand; b <= rows.last / kBand; ++b) use(static_cast<std::size_t>(b), t);
-    }
+    for (std::uint32_t t = 0; t < ranges.size(); ++t)
+      if (ranges[t].first <= ranges[t].last)
+        for (int b = ranges[t].first / kBand; b <= ranges[t].last / kBand; ++b) use(static_cast<std::size_t>(b), t);
   };
-  each([&](std::size_t b, std::uint32_t) { ++result.begin[b + 1]; });
-  for (std::size_t b = 0; b < bands; ++b) result.begin[b + 1] += result.begin[b];
-  result.triangles.resize(result.begin.back());
-  std::vector<std::size_t> next(result.begin.begin(), result.begin.end() - 1);
-  each([&](std::size_t b, std::uint32_t t) { result.triangles[next[b]++] = t; });
-  return result;
+  each([&](std::size_t b, std::uint32_t) { ++bands.begin[b + 1]; });
+  for (std::size_t b = 1; b < bands.begin.size(); ++b) bands.begin[b] += bands.begin[b - 1];
+  bands.triangles.resize(bands.begin.back());
+  std::vector<std::size_t> next(bands.begin.begin(), bands.begin.end() - 1);
+  each([&](std::size_t b, std::uint32_t t) { bands.triangles[next[b]++] = t; });
+  return bands;
 }
 
+/// Heights and gradients of the triangles, in their order, on the rows first_row..last_row.
 template <class Element>
-void fill_span(const Element& element, const MacroTriangle& triangle, const Target& target, int row, int first,
-               int last) {
-  const std::size_t base = static_cast<std::size_t>(row) * static_cast<std::size_t>(target.grid.columns);
-  for (int c = first; c <= last; ++c) {
-    const Vec2 p = target.grid.at(c, row);
-    const std::size_t cell = base + static_cast<std::size_t>(c);
-    if (target.gradients.empty()) {
-      target.out[cell] = element_value(element, triangle.barycentric(p));
-    } else {
-      const Jet jet = element_jet(element, triangle, p);
-      target.out[cell] = jet.value;
-      target.gradients[cell] = jet.gradient;
-    }
+void fill_rows(const Tin& tin, const std::vector<TriangleRecord<Element>>& records,
+               std::span<const std::uint32_t> triangles, const Target& target, int first_row, int last_row) {
+  const RowGrid& grid = target.grid;
+  const Vec2 cells_a_unit{1 / grid.step.x, 1 / grid.step.y};
+  RowPlan<Element> plan;
+  for (const std::uint32_t t : triangles) {
+    const TriangleRecord<Element>& record = records[t];
+    const Corners corners = corners_of(tin, t);
+    RowRange rows = row_range(corners, grid, cells_a_unit.y);
+    rows = {std::max(rows.first, first_row), std::min(rows.last, last_row)};
+    plan.begin(record.element, record.triangle.along_x(grid.step.x));
+    for_each_row_span(corners, grid, cells_a_unit.x, rows, [&](int row, int first, int last) {
+      if (target.gradients.empty()) {
+        plan.fill(record.triangle.barycentric(grid.at(first, row)), last - first + 1,
+                  &target.out[target.cell(first, row)]);
+        return;
+      }
+      for (int c = first; c <= last; ++c) {
+        const Jet jet = element_jet(record, grid.at(c, row));
+        target.out[target.cell(c, row)] = jet.value;
+        target.gradients[target.cell(c, row)] = jet.gradient;
+      }
+    });
   }
+}
+
+void erase(const Target& target, std::size_t begin, std::size_t end) {
+  std::fill(target.out.begin() + static_cast<std::ptrdiff_t>(begin),
+            target.out.begin() + static_cast<std::ptrdiff_t>(end), kNoData);
+  if (!target.gradients.empty())
+    std::fill(target.gradients.begin() + static_cast<std::ptrdiff_t>(begin),
+              target.gradients.begin() + static_cast<std::ptrdiff_t>(end), Vec2{kNoData, kNoData});
 }
 
 }  // namespace
@@ -78,37 +109,17 @@ void TerrainEvaluator::grid_values(Vec2 origin, Vec2 step, int columns, int rows
                                  gradients.size()));
   const Tin& tin = parts_->terrain.tin;
   const Target target{{origin, step, columns, rows}, out, gradients};
-  const Bands bands = sort_into_bands(tin, target.grid);
-  const auto fill_band = [&](std::size_t band) {
+  const Bands bands = sort_into_bands(tin, target.grid, context);
+  parallel_chunks(bands.begin.size() - 1, 1, context, [&](std::size_t band, std::size_t) {
     const int first_row = static_cast<int>(band) * kBand, last_row = std::min(rows, first_row + kBand) - 1;
-    const std::size_t width = static_cast<std::size_t>(columns);
-    const std::size_t begin = static_cast<std::size_t>(first_row) * width,
-                      end = static_cast<std::size_t>(last_row + 1) * width;
-    std::fill(out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end),
-              kNoData);
-    if (!gradients.empty())
-      std::fill(gradients.begin() + static_cast<std::ptrdiff_t>(begin),
-                gradients.begin() + static_cast<std::ptrdiff_t>(end), Vec2{kNoData, kNoData});
-    parts_->with_elements([&](const auto& elements) {
-      for (std::size_t k = bands.begin[band]; k < bands.begin[band + 1]; ++k) {
-        const std::uint32_t t = bands.triangles[k];
-        const MacroTriangle triangle(tin, t);
-        for_each_row_span(tin, t, target.grid, first_row, last_row, [&](int row, int first, int last) {
-          fill_span(elements[t], triangle, target, row, first, last);
-        });
-      }
-    });
+    erase(target, target.cell(0, first_row), target.cell(0, last_row + 1));
+    const std::span triangles(bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band]),
+                              bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band + 1]));
+    parts_->with_records([&](const auto& records) { fill_rows(tin, records, triangles, target, first_row, last_row); });
     if (!parts_->has_voids) return;
     for (int row = first_row; row <= last_row; ++row)
       for (int c = 0; c < columns; ++c)
-        if (!parts_->cell_valid(target.grid.at(c, row))) {
-          const std::size_t cell = static_cast<std::size_t>(row) * width + static_cast<std::size_t>(c);
-          out[cell] = kNoData;
-          if (!gradients.empty()) gradients[cell] = {kNoData, kNoData};
-        }
-  };
-  parallel_chunks(bands.begin.size() - 1, 1, context, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) fill_band(b);
+        if (!parts_->cell_valid(target.grid.at(c, row))) erase(target, target.cell(c, row), target.cell(c, row) + 1);
   });
 }
 

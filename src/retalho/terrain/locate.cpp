@@ -38,8 +38,8 @@ PointLocator::PointLocator(const Tin& tin, const Context& context) : tin_(tin) {
   convex_ = outline_is_convex();
   if (tin.triangles.empty()) return;
   const double width = high_.x - low_.x, height = high_.y - low_.y;
-  // One cell a triangle: the hint is mostly the triangle itself or its neighbour.
-  const double side = std::sqrt(width * height / static_cast<double>(tin.triangles.size()));
+  // Two cells a triangle: the hint is mostly the triangle itself or its neighbour.
+  const double side = std::sqrt(width * height / (2 * static_cast<double>(tin.triangles.size())));
   const auto cells = [&](double length) { return static_cast<int>(std::clamp(length / side, 1.0, 32768.0)); };
   if (side > 0) {
     columns_ = cells(width);
@@ -70,11 +70,13 @@ PointLocator::Step PointLocator::walk(Vec2 p, std::uint32_t from) const {
     const auto& v = tin_.triangles[t];
     const auto& n = tin_.neighbors[t];
     const std::size_t first = step < 4096 ? 0 : (step * 2654435761U >> 7) % 3;
-    bool moved = false, border = false;
+    bool moved = false, border = false, on_edge = false;
     for (std::size_t m = 0; m < 3 && !moved; ++m) {
       const std::size_t k = (first + m) % 3;
       if (n[k] != kNone && n[k] == previous) continue;  // it came through this edge: p is on this side
-      if (orientation(tin_.points[v[(k + 1) % 3]], tin_.points[v[(k + 2) % 3]], p) >= 0) continue;
+      const int turn = orientation(tin_.points[v[(k + 1) % 3]], tin_.points[v[(k + 2) % 3]], p);
+      on_edge |= turn == 0;
+      if (turn >= 0) continue;
       if (n[k] == kNone) {
         border = true;
         continue;  // another edge may lead on
@@ -83,9 +85,9 @@ PointLocator::Step PointLocator::walk(Vec2 p, std::uint32_t from) const {
       t = n[k];
       moved = true;
     }
-    if (!moved) return {t, !border};
+    if (!moved) return {t, !border, on_edge};
   }
-  return {t, false};
+  return {t, false, false};
 }
 
 std::uint32_t PointLocator::owner(Vec2 p, std::uint32_t triangle) const {
@@ -114,14 +116,11 @@ std::uint32_t PointLocator::owner(Vec2 p, std::uint32_t triangle) const {
 }
 
 std::uint32_t PointLocator::locate(Vec2 p, std::uint32_t hint) const {
-  if (!(p.x >= low_.x && p.x <= high_.x && p.y >= low_.y && p.y <= high_.y)) return kNone;
-  if (hint >= tin_.triangles.size()) {
-    const int c = std::min(columns_ - 1, static_cast<int>((p.x - low_.x) * per_x_));
-    const int r = std::min(rows_ - 1, static_cast<int>((p.y - low_.y) * per_y_));
-    hint = hints_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)];
-  }
+  const std::uint32_t near = this->hint(p);
+  if (near == kNone) return kNone;
+  if (hint >= tin_.triangles.size()) hint = near;
   const Step end = walk(p, hint);
-  if (end.inside) return owner(p, end.triangle);
+  if (end.inside) return end.on_edge ? owner(p, end.triangle) : end.triangle;
   return convex_ ? kNone : search_all(p);
 }
 

@@ -1,6 +1,7 @@
 // Which triangle of a TIN holds a point: an exact-sign walk, started from a grid of hints.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -18,13 +19,21 @@ class PointLocator {
  public:
   explicit PointLocator(const Tin& tin, const Context& context = {});
 
+  /// A triangle near `p`; kNone: outside of the triangulation's box, or not a number.
+  std::uint32_t hint(Vec2 p) const {
+    if (!(p.x >= low_.x && p.x <= high_.x && p.y >= low_.y && p.y <= high_.y)) return kNone;
+    const int c = std::min(columns_ - 1, static_cast<int>((p.x - low_.x) * per_x_));
+    const int r = std::min(rows_ - 1, static_cast<int>((p.y - low_.y) * per_y_));
+    return hints_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)];
+  }
+
   /// kNone: outside, or not a number.
   std::uint32_t locate(Vec2 p, std::uint32_t hint = kNone) const;
 
  private:
   struct Step {
     std::uint32_t triangle;
-    bool inside;
+    bool inside, on_edge;
   };
   Step walk(Vec2 p, std::uint32_t from) const;
   std::uint32_t owner(Vec2 p, std::uint32_t triangle) const;

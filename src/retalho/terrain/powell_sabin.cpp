@@ -51,20 +51,12 @@ std::vector<double> powell_sabin_splits(const Tin& tin, const EdgeTable& edges, 
 }
 
 TriangleFrame PowellSabinElement::frame(int piece, const TriangleFrame& macro) const {
-  const auto k = static_cast<std::size_t>(piece / 2);
-  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-  const std::array<Vec2, 3> grad{macro.grad_r, macro.grad_s, macro.grad_t};
-  const Vec2 to_centre = grad[k] / weight[k];
-  const Vec2 to_i = grad[i] - weight[i] * to_centre, to_j = grad[j] - weight[j] * to_centre;
+  const Barycentric along_x = within(piece, {macro.grad_r.x, macro.grad_s.x, macro.grad_t.x});
+  const Barycentric along_y = within(piece, {macro.grad_r.y, macro.grad_s.y, macro.grad_t.y});
   TriangleFrame frame;
-  frame.grad_r = to_centre;
-  if (piece % 2 == 0) {
-    frame.grad_t = to_j / split[k];
-    frame.grad_s = to_i - (1 - split[k]) * frame.grad_t;
-  } else {
-    frame.grad_s = to_i / (1 - split[k]);
-    frame.grad_t = to_j - split[k] * frame.grad_s;
-  }
+  frame.grad_r = {along_x.r, along_y.r};
+  frame.grad_s = {along_x.s, along_y.s};
+  frame.grad_t = {along_x.t, along_y.t};
   return frame;
 }
 

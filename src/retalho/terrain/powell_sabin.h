@@ -38,6 +38,8 @@ struct PowellSabinElement {
   std::array<double, 3> second;       ///< on edge k between the split and corner k + 2
 
   PiecePoint find(Barycentric macro) const;
+  /// From the whole triangle's coordinates, of a point or of a direction, to the piece's.
+  Barycentric within(int piece, Barycentric macro) const;
   TriangleNet<2> net(int piece) const;
   /// Gradients of the piece's barycentric coordinates, from those of the whole triangle.
   TriangleFrame frame(int piece, const TriangleFrame& macro) const;
@@ -54,20 +56,36 @@ std::array<double, 3> incentre_weights(Vec2 a, Vec2 b, Vec2 c);
 
 inline PiecePoint PowellSabinElement::find(Barycentric macro) const {
   const std::array<double, 3> u{macro.r, macro.s, macro.t};
-  // The centre's share of the point, seen from each edge; the smallest belongs to the edge whose pieces hold the point.
-  const std::array<double, 3> share{u[0] / weight[0], u[1] / weight[1], u[2] / weight[2]};
+  // The centre's share of the point, seen from edge k, is u[k] / weight[k]; the smallest share belongs to the edge
+  // whose two pieces hold the point.
   std::size_t k = 0;
-  if (share[1] < share[k]) k = 1;
-  if (share[2] < share[k]) k = 2;
+  if (u[1] * weight[0] < u[0] * weight[1]) k = 1;
+  if (u[2] * weight[k] < u[k] * weight[2]) k = 2;
   const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-  const double centre_part = share[k];
+  const double centre_part = u[k] / weight[k];
   const double ui = u[i] - centre_part * weight[i], uj = u[j] - centre_part * weight[j];
-  if (uj * (1 - split[k]) <= ui * split[k]) {
+  const double rest = 1 - split[k];
+  if (uj * rest <= ui * split[k]) {
     const double part = uj / split[k];
-    return {static_cast<int>(2 * k), {centre_part, ui - part * (1 - split[k]), part}};
+    return {static_cast<int>(2 * k), {centre_part, ui - part * rest, part}};
   }
-  const double part = ui / (1 - split[k]);
+  const double part = ui / rest;
   return {static_cast<int>(2 * k + 1), {centre_part, part, uj - part * split[k]}};
+}
+
+inline Barycentric PowellSabinElement::within(int piece, Barycentric macro) const {
+  const std::array<double, 3> u{macro.r, macro.s, macro.t};
+  const auto k = static_cast<std::size_t>(piece / 2);
+  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  const double centre_part = u[k] / weight[k];
+  const double ui = u[i] - centre_part * weight[i], uj = u[j] - centre_part * weight[j];
+  const double rest = 1 - split[k];
+  if (piece % 2 == 0) {
+    const double part = uj / split[k];
+    return {centre_part, ui - part * rest, part};
+  }
+  const double part = ui / rest;
+  return {centre_part, part, uj - part * split[k]};
 }
 
 inline TriangleNet<2> PowellSabinElement::net(int piece) const {

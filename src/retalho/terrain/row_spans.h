@@ -2,12 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "retalho/core/vec.h"
 #include "retalho/terrain/orientation.h"
-#include "retalho/tin/tin.h"
 
 namespace retalho {
 
@@ -25,75 +25,82 @@ struct RowRange {
   int first = 0, last = -1;  ///< empty where first > last
 };
 
-namespace row_spans_detail {
-
-/// Clamps before the conversion: a coordinate far outside of the grid must not overflow.
-inline int whole(double v, int most) {
-  return static_cast<int>(std::clamp(v, -1.0, static_cast<double>(most)));
+/// The largest whole number not above `v`, clamped to [-2, most + 2]: a coordinate far outside must not overflow.
+inline int clamped_floor(double v, int most) {
+  const double clamped = std::min(std::max(v, -2.0), most + 2.0);
+  const int whole = static_cast<int>(clamped);
+  return whole - (clamped < whole);
 }
 
-}  // namespace row_spans_detail
+using Corners = std::array<Vec2, 3>;
 
 /// The rows whose height lies within the closed triangle.
-inline RowRange row_range(const Tin& tin, std::uint32_t triangle, const RowGrid& grid) {
-  const auto& v = tin.triangles[triangle];
-  const double ya = tin.points[v[0]].y, yb = tin.points[v[1]].y, yc = tin.points[v[2]].y;
-  const double low = std::min({ya, yb, yc}), high = std::max({ya, yb, yc});
-  // One row more at either end by arithmetic, then exactly by the rows' own coordinates.
-  RowRange range{
-      std::max(0, row_spans_detail::whole(std::floor((grid.origin.y - high) / grid.step.y), grid.rows)),
-      std::min(grid.rows - 1, row_spans_detail::whole(std::ceil((grid.origin.y - low) / grid.step.y), grid.rows))};
+inline RowRange row_range(const Corners& c, const RowGrid& grid, double rows_a_unit) {
+  const double low = std::min(c[0].y, std::min(c[1].y, c[2].y)), high = std::max(c[0].y, std::max(c[1].y, c[2].y));
+  // By arithmetic up to one row too many at either end, then exactly by the rows' own coordinates.
+  RowRange range{std::max(0, clamped_floor((grid.origin.y - high) * rows_a_unit - 0.01, grid.rows)),
+                 std::min(grid.rows - 1, clamped_floor((grid.origin.y - low) * rows_a_unit + 0.01, grid.rows))};
   while (range.first <= range.last && grid.y(range.first) > high) ++range.first;
   while (range.first <= range.last && grid.y(range.last) < low) --range.last;
   return range;
 }
 
-/// Calls use(row, first, last) for the rows from `first_row` to `last_row`: columns first..last lie in the closed
-/// triangle.
+/// Calls use(row, first, last) for the rows of `rows`, all of which must lie within the triangle: columns first..last
+/// of the row lie in the closed triangle (none: no call).
 template <class Use>
-void for_each_row_span(const Tin& tin, std::uint32_t triangle, const RowGrid& grid, int first_row, int last_row,
+void for_each_row_span(const Corners& corners, const RowGrid& grid, double columns_a_unit, RowRange rows,
                        const Use& use) {
-  RowRange rows = row_range(tin, triangle, grid);
-  rows.first = std::max(rows.first, first_row);
-  rows.last = std::min(rows.last, last_row);
   if (rows.first > rows.last) return;
-  const auto& v = tin.triangles[triangle];
-  Vec2 low = tin.points[v[0]], middle = tin.points[v[1]], high = tin.points[v[2]];
-  if (middle.y < low.y) std::swap(low, middle);
-  if (high.y < middle.y) std::swap(middle, high);
-  if (middle.y < low.y) std::swap(low, middle);
-  const bool middle_right = orientation(low, high, middle) < 0;
+  // Counter-clockwise from the lowest corner: (low, b, c).
+  std::size_t at = 0;
+  if (corners[1].y < corners[at].y) at = 1;
+  if (corners[2].y < corners[at].y) at = 2;
+  const Vec2 low = corners[at], b = corners[(at + 1) % 3], c = corners[(at + 2) % 3];
+  // b is on the right of c: the right chain is low-b(-c), the left chain low-c(-b).
+  const bool b_first = b.y <= c.y;  // the lower of the two is the middle corner
+  const Vec2 middle = b_first ? b : c, high = b_first ? c : b;
   // Where arithmetic leaves it open on which side of an edge a cell lies, the exact predicate decides.
-  const double size = std::max({std::abs(low.x), std::abs(middle.x), std::abs(high.x), std::abs(grid.origin.x)});
-  const double doubt = std::min(0.49, 1e-9 + 1e-15 * size / grid.step.x);
+  const double size =
+      std::max(std::max(std::abs(low.x), std::abs(b.x)), std::max(std::abs(c.x), std::abs(grid.origin.x)));
+  const double doubt = std::min(0.49, 1e-9 + 1e-15 * size * columns_a_unit);
   struct Side {
     Vec2 from, to;
-    double slope;  // of x over y
+    double slope = 0, start = 0;  // column = start + slope * (y - from.y)
   };
-  const auto side = [](Vec2 from, Vec2 to) {
-    return Side{from, to, to.y > from.y ? (to.x - from.x) / (to.y - from.y) : 0};
+  const auto side = [&](Vec2 from, Vec2 to) {
+    const double height = to.y - from.y;
+    return Side{from, to, height > 0 ? (to.x - from.x) / height * columns_a_unit : 0,
+                (from.x - grid.origin.x) * columns_a_unit};
   };
-  const Side longest = side(low, high), lower = side(low, middle), upper = side(middle, high);
-  // The first column at or right of the side, or the last at or left of it.
-  const auto column = [&](const Side& s, double y, int row, bool is_left) {
-    const double exact = (s.from.x + s.slope * (y - s.from.y) - grid.origin.x) / grid.step.x;
-    const double nearest = std::floor(exact + 0.5);
-    if (std::abs(exact - nearest) > doubt) {
-      const double c = is_left ? std::ceil(exact) : std::floor(exact);
-      return row_spans_detail::whole(c, grid.columns);
-    }
-    const int c = row_spans_detail::whole(nearest, grid.columns);
-    const int turn = orientation(s.from, s.to, grid.at(c, row));  // > 0: the cell lies left of the side
-    return is_left ? (turn <= 0 ? c : c + 1) : (turn >= 0 ? c : c - 1);
+  const Side longest = side(low, high);
+  Side shorter = middle.y > low.y ? side(low, middle) : side(middle, high);
+  bool lower = middle.y > low.y;
+  const auto first_column = [&](const Side& s, double y, int row) {  // at or right of the side
+    const double exact = s.start + s.slope * (y - s.from.y);
+    const int floor = clamped_floor(exact, grid.columns);
+    const double part = exact - floor;
+    if (part > doubt && part < 1 - doubt) return floor + 1;
+    const int nearest = part > 0.5 ? floor + 1 : floor;
+    return orientation(s.from, s.to, grid.at(nearest, row)) <= 0 ? nearest : nearest + 1;
   };
-  for (int row = rows.first; row <= rows.last; ++row) {
+  const auto last_column = [&](const Side& s, double y, int row) {  // at or left of the side
+    const double exact = s.start + s.slope * (y - s.from.y);
+    const int floor = clamped_floor(exact, grid.columns);
+    const double part = exact - floor;
+    if (part > doubt && part < 1 - doubt) return floor;
+    const int nearest = part > 0.5 ? floor + 1 : floor;
+    return orientation(s.from, s.to, grid.at(nearest, row)) >= 0 ? nearest : nearest - 1;
+  };
+  for (int row = rows.last; row >= rows.first; --row) {  // upwards: from the low corner
     const double y = grid.y(row);
-    const Side& shorter = y < middle.y || (y == middle.y && middle.y > low.y) ? lower : upper;
-    const Side& left = middle_right ? longest : shorter;
-    const Side& right = middle_right ? shorter : longest;
-    const int first = std::max(0, column(left, y, row, true)),
-              last = std::min(grid.columns - 1, column(right, y, row, false));
-    if (first <= last) use(row, first, last);
+    if (lower && y > middle.y) {
+      shorter = side(middle, high);
+      lower = false;
+    }
+    const int first = first_column(b_first ? longest : shorter, y, row),
+              last = last_column(b_first ? shorter : longest, y, row);
+    const int from = std::max(0, first), to = std::min(grid.columns - 1, last);
+    if (from <= to) use(row, from, to);
   }
 }
 
