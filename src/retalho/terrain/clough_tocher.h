@@ -3,6 +3,7 @@
 // Two ways to set the derivative across the edges (CrossDerivative): perpendicular, and of cubic precision.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -28,9 +29,25 @@ struct CloughTocherElement {
   std::array<double, 3> inner;   ///< next to the centroid towards corner k
   std::array<double, 3> face;    ///< inside piece k: the only freedom of the element
 
-  PiecePoint find(Barycentric macro) const;
-  /// From the whole triangle's coordinates, of a point or of a direction, to the piece's.
-  Barycentric within(int piece, Barycentric macro) const;
+  /// From the whole triangle's coordinates, of a point or of a direction, to the piece's: linear.
+  struct Map {
+    Map() = default;
+    Map(const CloughTocherElement&, int piece) : k(static_cast<std::size_t>(piece)) {}
+    Barycentric operator()(Barycentric macro) const {
+      const std::array<double, 3> u{macro.r, macro.s, macro.t};
+      return {u[(k + 1) % 3] - u[k], u[(k + 2) % 3] - u[k], 3 * u[k]};
+    }
+
+   private:
+    std::size_t k = 0;
+  };
+
+  /// The piece that holds a point.
+  int piece(Barycentric macro) const { return macro.t < std::min(macro.r, macro.s) ? 2 : macro.s < macro.r ? 1 : 0; }
+  PiecePoint find(Barycentric macro) const {
+    const int number = piece(macro);
+    return {number, Map(*this, number)(macro)};
+  }
   TriangleNet<3> net(int piece) const;
   /// Gradients of the piece's barycentric coordinates, from those of the whole triangle.
   TriangleFrame frame(int piece, const TriangleFrame& macro) const;
@@ -41,20 +58,6 @@ CloughTocherElement clough_tocher_element(const Terrain& terrain, const EdgeTabl
 /// For CrossDerivative::cubic, once for each edge: 1 where the two triangles are so unlike each other that the cubic
 /// rule would multiply the errors of the gradients, and the perpendicular rule is used instead.
 std::vector<std::uint8_t> cubic_fallbacks(const Tin& tin, const EdgeTable& edges, const Context& context = {});
-
-inline PiecePoint CloughTocherElement::find(Barycentric macro) const {
-  const std::array<double, 3> u{macro.r, macro.s, macro.t};
-  std::size_t k = 0;
-  if (u[1] < u[k]) k = 1;
-  if (u[2] < u[k]) k = 2;
-  return {static_cast<int>(k), {u[(k + 1) % 3] - u[k], u[(k + 2) % 3] - u[k], 3 * u[k]}};
-}
-
-inline Barycentric CloughTocherElement::within(int piece, Barycentric macro) const {
-  const std::array<double, 3> u{macro.r, macro.s, macro.t};
-  const auto k = static_cast<std::size_t>(piece);
-  return {u[(k + 1) % 3] - u[k], u[(k + 2) % 3] - u[k], 3 * u[k]};
-}
 
 inline TriangleNet<3> CloughTocherElement::net(int piece) const {
   const auto k = static_cast<std::size_t>(piece);

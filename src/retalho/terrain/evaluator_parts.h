@@ -19,8 +19,14 @@ struct LinearElement {
 
   std::array<double, 3> corner;
 
+  struct Map {
+    Map() = default;
+    Map(const LinearElement&, int) {}
+    Barycentric operator()(Barycentric macro) const { return macro; }
+  };
+
+  int piece(Barycentric) const { return 0; }
   PiecePoint find(Barycentric macro) const { return {0, macro}; }
-  Barycentric within(int, Barycentric macro) const { return macro; }
   TriangleNet<1> net(int) const { return corner; }
   TriangleFrame frame(int, const TriangleFrame& macro) const { return macro; }
 };
@@ -38,7 +44,7 @@ class MacroTriangle {
     if (!(area2 > 0)) return;
     grad_s_ = Vec2{ac.y, -ac.x} / area2;
     grad_t_ = Vec2{-ab.y, ab.x} / area2;
-    margin_ = 64 * 1.11e-16 * (std::abs(ab.x * ac.y) + std::abs(ab.y * ac.x)) / area2;
+    margin_ = kRounding * (std::abs(ab.x * ac.y) + std::abs(ab.y * ac.x)) / area2;
   }
 
   Barycentric barycentric(Vec2 p) const {
@@ -61,8 +67,14 @@ class MacroTriangle {
     const double s = step * grad_s_.x, t = step * grad_t_.x;
     return {-(s + t), s, t};
   }
+  /// How the coordinates change with one unit of y.
+  Barycentric along_y() const { return {-(grad_s_.y + grad_t_.y), grad_s_.y, grad_t_.y}; }
+  /// About the ratio of the longest side to the smallest height; 1 or more.
+  double flatness() const { return margin_ / kRounding; }
 
  private:
+  static constexpr double kRounding = 64 * 1.1102230246251565e-16;
+
   Vec2 origin_, grad_s_, grad_t_;
   double margin_ = 1;
 };

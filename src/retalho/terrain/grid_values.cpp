@@ -9,7 +9,7 @@
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/evaluator_parts.h"
-#include "retalho/terrain/row_plan.h"
+#include "retalho/terrain/row_fan.h"
 #include "retalho/terrain/row_spans.h"
 
 namespace retalho {
@@ -35,17 +35,19 @@ Corners corners_of(const Tin& tin, std::uint32_t triangle) {
 
 /// For each band of rows the triangles that touch it, ascending.
 struct Bands {
+  std::vector<RowRange> rows;  // of each triangle
   std::vector<std::size_t> begin;
   std::vector<std::uint32_t> triangles;
 };
 
 Bands sort_into_bands(const Tin& tin, const RowGrid& grid, const Context& context) {
-  std::vector<RowRange> ranges(tin.triangle_count());
+  Bands bands;
+  std::vector<RowRange>& ranges = bands.rows;
+  ranges.resize(tin.triangle_count());
   parallel_chunks(ranges.size(), 16384, context, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       ranges[t] = row_range(corners_of(tin, static_cast<std::uint32_t>(t)), grid, 1 / grid.step.y);
   });
-  Bands bands;
   bands.begin.assign(static_cast<std::size_t>((grid.rows + kBand - 1) / kBand) + 1, 0);
   const auto each = [&](const auto& use) {
     for (std::uint32_t t = 0; t < ranges.size(); ++t)
@@ -60,23 +62,37 @@ Bands sort_into_bands(const Tin& tin, const RowGrid& grid, const Context& contex
   return bands;
 }
 
+/// The numbers of a TIN's triangles often jump about; what lies ahead in the list is asked for in time.
+template <class Element>
+void prefetch(const Tin& tin, const std::vector<TriangleRecord<Element>>& records,
+              std::span<const std::uint32_t> triangles, std::size_t k) {
+  if (k + 8 < triangles.size()) __builtin_prefetch(&tin.triangles[triangles[k + 8]]);
+  if (k + 4 >= triangles.size()) return;
+  const std::uint32_t t = triangles[k + 4];
+  for (const std::uint32_t v : tin.triangles[t]) __builtin_prefetch(&tin.points[v]);
+  const char* record = reinterpret_cast<const char*>(&records[t]);
+  for (std::size_t line = 0; line < sizeof records[t]; line += 64) __builtin_prefetch(record + line);
+}
+
 /// Heights and gradients of the triangles, in their order, on the rows first_row..last_row.
 template <class Element>
-void fill_rows(const Tin& tin, const std::vector<TriangleRecord<Element>>& records,
-               std::span<const std::uint32_t> triangles, const Target& target, int first_row, int last_row) {
+void fill_rows(const Tin& tin, const std::vector<TriangleRecord<Element>>& records, const Bands& bands,
+               std::size_t band, const Target& target, int first_row, int last_row) {
   const RowGrid& grid = target.grid;
   const Vec2 cells_a_unit{1 / grid.step.x, 1 / grid.step.y};
-  RowPlan<Element> plan;
-  for (const std::uint32_t t : triangles) {
+  const std::span triangles(bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band]),
+                            bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band + 1]));
+  RowFan<Element> fan;
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    prefetch(tin, records, triangles, k);
+    const std::uint32_t t = triangles[k];
     const TriangleRecord<Element>& record = records[t];
     const Corners corners = corners_of(tin, t);
-    RowRange rows = row_range(corners, grid, cells_a_unit.y);
-    rows = {std::max(rows.first, first_row), std::min(rows.last, last_row)};
-    plan.begin(record.element, record.triangle.along_x(grid.step.x));
+    const RowRange rows{std::max(bands.rows[t].first, first_row), std::min(bands.rows[t].last, last_row)};
+    fan.begin(record, corners, grid, cells_a_unit.x);
     for_each_row_span(corners, grid, cells_a_unit.x, rows, [&](int row, int first, int last) {
       if (target.gradients.empty()) {
-        plan.fill(record.triangle.barycentric(grid.at(first, row)), last - first + 1,
-                  &target.out[target.cell(first, row)]);
+        fan.fill(row, grid.y(row), first, last, &target.out[target.cell(first, row)]);
         return;
       }
       for (int c = first; c <= last; ++c) {
@@ -113,9 +129,8 @@ void TerrainEvaluator::grid_values(Vec2 origin, Vec2 step, int columns, int rows
   parallel_chunks(bands.begin.size() - 1, 1, context, [&](std::size_t band, std::size_t) {
     const int first_row = static_cast<int>(band) * kBand, last_row = std::min(rows, first_row + kBand) - 1;
     erase(target, target.cell(0, first_row), target.cell(0, last_row + 1));
-    const std::span triangles(bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band]),
-                              bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band + 1]));
-    parts_->with_records([&](const auto& records) { fill_rows(tin, records, triangles, target, first_row, last_row); });
+    parts_->with_records(
+        [&](const auto& records) { fill_rows(tin, records, bands, band, target, first_row, last_row); });
     if (!parts_->has_voids) return;
     for (int row = first_row; row <= last_row; ++row)
       for (int c = 0; c < columns; ++c)

@@ -51,8 +51,9 @@ std::vector<double> powell_sabin_splits(const Tin& tin, const EdgeTable& edges, 
 }
 
 TriangleFrame PowellSabinElement::frame(int piece, const TriangleFrame& macro) const {
-  const Barycentric along_x = within(piece, {macro.grad_r.x, macro.grad_s.x, macro.grad_t.x});
-  const Barycentric along_y = within(piece, {macro.grad_r.y, macro.grad_s.y, macro.grad_t.y});
+  const Map map(*this, piece);
+  const Barycentric along_x = map({macro.grad_r.x, macro.grad_s.x, macro.grad_t.x});
+  const Barycentric along_y = map({macro.grad_r.y, macro.grad_s.y, macro.grad_t.y});
   TriangleFrame frame;
   frame.grad_r = {along_x.r, along_y.r};
   frame.grad_s = {along_x.s, along_y.s};

@@ -37,9 +37,24 @@ struct PowellSabinElement {
   std::array<double, 3> first;        ///< on edge k between corner k + 1 and the split
   std::array<double, 3> second;       ///< on edge k between the split and corner k + 2
 
-  PiecePoint find(Barycentric macro) const;
-  /// From the whole triangle's coordinates, of a point or of a direction, to the piece's.
-  Barycentric within(int piece, Barycentric macro) const;
+  /// From the whole triangle's coordinates, of a point or of a direction, to the piece's: linear.
+  struct Map {
+    Map() = default;
+    Map(const PowellSabinElement& e, int piece);
+    Barycentric operator()(Barycentric macro) const;
+
+   private:
+    std::size_t k = 0;
+    bool second_half = false;
+    double per_weight = 0, weight_i = 0, weight_j = 0, per_length = 0, other_length = 0;
+  };
+
+  /// The piece that holds a point.
+  int piece(Barycentric macro) const;
+  PiecePoint find(Barycentric macro) const {
+    const int number = piece(macro);
+    return {number, Map(*this, number)(macro)};
+  }
   TriangleNet<2> net(int piece) const;
   /// Gradients of the piece's barycentric coordinates, from those of the whole triangle.
   TriangleFrame frame(int piece, const TriangleFrame& macro) const;
@@ -54,7 +69,7 @@ std::vector<double> powell_sabin_splits(const Tin& tin, const EdgeTable& edges, 
 /// Incentre of a triangle in its barycentric coordinates.
 std::array<double, 3> incentre_weights(Vec2 a, Vec2 b, Vec2 c);
 
-inline PiecePoint PowellSabinElement::find(Barycentric macro) const {
+inline int PowellSabinElement::piece(Barycentric macro) const {
   const std::array<double, 3> u{macro.r, macro.s, macro.t};
   // The centre's share of the point, seen from edge k, is u[k] / weight[k]; the smallest share belongs to the edge
   // whose two pieces hold the point.
@@ -62,30 +77,30 @@ inline PiecePoint PowellSabinElement::find(Barycentric macro) const {
   if (u[1] * weight[0] < u[0] * weight[1]) k = 1;
   if (u[2] * weight[k] < u[k] * weight[2]) k = 2;
   const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-  const double centre_part = u[k] / weight[k];
-  const double ui = u[i] - centre_part * weight[i], uj = u[j] - centre_part * weight[j];
-  const double rest = 1 - split[k];
-  if (uj * rest <= ui * split[k]) {
-    const double part = uj / split[k];
-    return {static_cast<int>(2 * k), {centre_part, ui - part * rest, part}};
-  }
-  const double part = ui / rest;
-  return {static_cast<int>(2 * k + 1), {centre_part, part, uj - part * split[k]}};
+  // Beside the rib when, without the centre's share, the point divides edge k as the split does.
+  const double ui = u[i] * weight[k] - u[k] * weight[i], uj = u[j] * weight[k] - u[k] * weight[j];
+  return static_cast<int>(2 * k) + (uj * (1 - split[k]) > ui * split[k]);
 }
 
-inline Barycentric PowellSabinElement::within(int piece, Barycentric macro) const {
+inline PowellSabinElement::Map::Map(const PowellSabinElement& e, int piece)
+    : k(static_cast<std::size_t>(piece) / 2),
+      second_half(piece % 2 != 0),
+      per_weight(1 / e.weight[k]),
+      weight_i(e.weight[(k + 1) % 3]),
+      weight_j(e.weight[(k + 2) % 3]) {
+  const double length = second_half ? 1 - e.split[k] : e.split[k];
+  per_length = 1 / length;
+  other_length = 1 - length;
+}
+
+inline Barycentric PowellSabinElement::Map::operator()(Barycentric macro) const {
   const std::array<double, 3> u{macro.r, macro.s, macro.t};
-  const auto k = static_cast<std::size_t>(piece / 2);
-  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-  const double centre_part = u[k] / weight[k];
-  const double ui = u[i] - centre_part * weight[i], uj = u[j] - centre_part * weight[j];
-  const double rest = 1 - split[k];
-  if (piece % 2 == 0) {
-    const double part = uj / split[k];
-    return {centre_part, ui - part * rest, part};
-  }
-  const double part = ui / rest;
-  return {centre_part, part, uj - part * split[k]};
+  const double centre_part = u[k] * per_weight;
+  const double ui = u[(k + 1) % 3] - centre_part * weight_i, uj = u[(k + 2) % 3] - centre_part * weight_j;
+  const double part = (second_half ? ui : uj) * per_length;
+  const double corner_part = (second_half ? uj : ui) - part * other_length;
+  if (second_half) return {centre_part, part, corner_part};
+  return {centre_part, corner_part, part};
 }
 
 inline TriangleNet<2> PowellSabinElement::net(int piece) const {
