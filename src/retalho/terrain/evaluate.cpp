@@ -14,26 +14,22 @@ namespace {
 constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();
 
 template <class Element, class Make>
-void fill(std::vector<TriangleRecord<Element>>& records, const Tin& tin, const Context& context, const Make& make) {
-  records.resize(tin.triangle_count());
-  parallel_chunks(records.size(), 4096, context, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto t = static_cast<std::uint32_t>(k);
-      records[k] = {MacroTriangle(tin, t), make(t)};
-    }
+void fill(std::vector<Element>& elements, std::size_t count, const Context& context, const Make& make) {
+  elements.resize(count);
+  parallel_chunks(count, 4096, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) elements[t] = make(static_cast<std::uint32_t>(t));
   });
 }
 
-/// The height at `p`, looked for from triangle `hint` on, which is left where `p` was found; NaN outside.
+/// The height at `p`, looked for from triangle `hint` on; NaN outside. Leaves the triangle in `hint`.
 template <class Element>
-double value_near(const std::vector<TriangleRecord<Element>>& records, const PointLocator& locator, Vec2 p,
-                  std::uint32_t& hint) {
-  const Barycentric guess = records[hint].triangle.barycentric(p);
-  if (records[hint].triangle.surely_inside(guess)) return element_value(records[hint].element, guess);
+double value_near(const std::vector<Element>& elements, const PointLocator& locator, Vec2 p, std::uint32_t& hint) {
+  prefetch(elements[hint]);
   const std::uint32_t t = locator.locate(p, hint);
   if (t == kNone) return kNoData;
+  if (t != hint) prefetch(elements[t]);
   hint = t;
-  return element_value(records[t].element, records[t].triangle.barycentric(p));
+  return element_value(elements[t], MacroTriangle(locator.facet(t).corners).barycentric(p));
 }
 
 bool any_void(const GridDomain& grid) {
@@ -48,13 +44,15 @@ TerrainEvaluator::Parts::Parts(const Terrain& model, const Context& context)
   const Tin& tin = model.tin;
   switch (model.kind) {
     case SurfaceKind::powell_sabin:
-      fill(powell_sabin, tin, context, [&](std::uint32_t t) { return powell_sabin_element(model, edges, t); });
+      fill(powell_sabin, tin.triangle_count(), context,
+           [&](std::uint32_t t) { return powell_sabin_element(model, edges, t); });
       break;
     case SurfaceKind::clough_tocher:
-      fill(clough_tocher, tin, context, [&](std::uint32_t t) { return clough_tocher_element(model, edges, t); });
+      fill(clough_tocher, tin.triangle_count(), context,
+           [&](std::uint32_t t) { return clough_tocher_element(model, edges, t); });
       break;
     case SurfaceKind::linear:
-      fill(linear, tin, context, [&](std::uint32_t t) {
+      fill(linear, tin.triangle_count(), context, [&](std::uint32_t t) {
         const auto& v = tin.triangles[t];
         return LinearElement{{tin.heights[v[0]], tin.heights[v[1]], tin.heights[v[2]]}};
       });
@@ -86,7 +84,7 @@ bool TerrainEvaluator::valid(Vec2 p) const {
 double TerrainEvaluator::value(Vec2 p) const {
   std::uint32_t hint = parts_->locator.hint(p);
   if (hint == kNone || !parts_->cell_valid(p)) return kNoData;
-  return parts_->with_records([&](const auto& records) { return value_near(records, parts_->locator, p, hint); });
+  return parts_->with_elements([&](const auto& elements) { return value_near(elements, parts_->locator, p, hint); });
 }
 
 std::optional<Jet> TerrainEvaluator::jet(Vec2 p) const {
@@ -97,21 +95,22 @@ std::optional<Jet> TerrainEvaluator::jet(Vec2 p) const {
 }
 
 Jet TerrainEvaluator::jet_in(std::uint32_t triangle, Vec2 p) const {
-  return parts_->with_records([&](const auto& records) { return element_jet(records[triangle], p); });
+  return parts_->with_elements([&](const auto& elements) {
+    return element_jet(elements[triangle], MacroTriangle(parts_->locator.facet(triangle).corners), p);
+  });
 }
 
 void TerrainEvaluator::values(std::span<const Vec2> points, std::span<double> out, const Context& context) const {
   if (out.size() != points.size())
     throw UsageError(fmt::format("values: {} points, but room for {} heights", points.size(), out.size()));
   const PointLocator& locator = parts_->locator;
-  parts_->with_records([&](const auto& records) {
+  parts_->with_elements([&](const auto& elements) {
     parallel_chunks(points.size(), 16384, context, [&](std::size_t begin, std::size_t end) {
       std::uint32_t last = kNone;  // where the point before was found: a chunk starts afresh
       for (std::size_t k = begin; k < end; ++k) {
         const Vec2 p = points[k];
-        if (last == kNone || !records[last].triangle.surely_inside(records[last].triangle.barycentric(p)))
-          last = locator.hint(p);
-        out[k] = last == kNone || !parts_->cell_valid(p) ? kNoData : value_near(records, locator, p, last);
+        if (last == kNone || !locator.holds_inside(last, p)) last = locator.hint(p);
+        out[k] = last == kNone || !parts_->cell_valid(p) ? kNoData : value_near(elements, locator, p, last);
       }
     });
   });

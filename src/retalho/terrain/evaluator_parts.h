@@ -35,16 +35,14 @@ struct LinearElement {
 /// corner, so that no division by zero reaches a height.
 class MacroTriangle {
  public:
-  MacroTriangle() = default;
-  MacroTriangle(const Tin& tin, std::uint32_t triangle) {
-    const auto& v = tin.triangles[triangle];
-    origin_ = tin.points[v[0]];
-    const Vec2 ab = tin.points[v[1]] - origin_, ac = tin.points[v[2]] - origin_;
+  explicit MacroTriangle(const Corners& c) : origin_(c[0]) {
+    const Vec2 ab = c[1] - c[0], ac = c[2] - c[0];
     const double area2 = cross(ab, ac);
     if (!(area2 > 0)) return;
-    grad_s_ = Vec2{ac.y, -ac.x} / area2;
-    grad_t_ = Vec2{-ab.y, ab.x} / area2;
-    margin_ = kRounding * (std::abs(ab.x * ac.y) + std::abs(ab.y * ac.x)) / area2;
+    const double per_area2 = 1 / area2;
+    grad_s_ = Vec2{ac.y, -ac.x} * per_area2;
+    grad_t_ = Vec2{-ab.y, ab.x} * per_area2;
+    flatness_ = (std::abs(ab.x * ac.y) + std::abs(ab.y * ac.x)) * per_area2;
   }
 
   Barycentric barycentric(Vec2 p) const {
@@ -52,8 +50,6 @@ class MacroTriangle {
     const double s = dot(grad_s_, d), t = dot(grad_t_, d);
     return {1 - s - t, s, t};
   }
-  /// Are these coordinates, computed by `barycentric`, those of a point strictly inside, beyond all rounding?
-  bool surely_inside(Barycentric u) const { return u.r > margin_ && u.s > margin_ && u.t > margin_; }
   /// Only the gradients are filled.
   TriangleFrame frame() const {
     TriangleFrame f;
@@ -69,22 +65,20 @@ class MacroTriangle {
   }
   /// How the coordinates change with one unit of y.
   Barycentric along_y() const { return {-(grad_s_.y + grad_t_.y), grad_s_.y, grad_t_.y}; }
-  /// About the ratio of the longest side to the smallest height; 1 or more.
-  double flatness() const { return margin_ / kRounding; }
+  /// About the ratio of the longest side to the smallest height; at least 1, huge where the area rounds to nothing.
+  double flatness() const { return flatness_; }
 
  private:
-  static constexpr double kRounding = 64 * 1.1102230246251565e-16;
-
   Vec2 origin_, grad_s_, grad_t_;
-  double margin_ = 1;
+  double flatness_ = 1e300;
 };
 
-/// All that a query in one triangle touches, in one place.
+/// Asks for a whole element at once: a query would otherwise wait for one line of memory after the other.
 template <class Element>
-struct TriangleRecord {
-  MacroTriangle triangle;
-  Element element;
-};
+void prefetch(const Element& element) {
+  const char* bytes = reinterpret_cast<const char*>(&element);
+  for (std::size_t line = 0; line < sizeof(Element); line += 64) __builtin_prefetch(bytes + line);
+}
 
 struct TerrainEvaluator::Parts {
   Parts(const Terrain& model, const Context& context);
@@ -94,13 +88,13 @@ struct TerrainEvaluator::Parts {
   PointLocator locator;
   bool has_voids = false;  ///< the grid has cells without data
   // One of these is filled, by the terrain's kind.
-  std::vector<TriangleRecord<LinearElement>> linear;
-  std::vector<TriangleRecord<PowellSabinElement>> powell_sabin;
-  std::vector<TriangleRecord<CloughTocherElement>> clough_tocher;
+  std::vector<LinearElement> linear;
+  std::vector<PowellSabinElement> powell_sabin;
+  std::vector<CloughTocherElement> clough_tocher;
 
-  /// Calls `use` with the records of the terrain's kind.
+  /// Calls `use` with the elements of the terrain's kind.
   template <class Use>
-  decltype(auto) with_records(const Use& use) const {
+  decltype(auto) with_elements(const Use& use) const {
     switch (terrain.kind) {
       case SurfaceKind::powell_sabin:
         return use(powell_sabin);
@@ -121,10 +115,10 @@ double element_value(const Element& element, Barycentric macro) {
 }
 
 template <class Element>
-Jet element_jet(const TriangleRecord<Element>& record, Vec2 p) {
-  const PiecePoint place = record.element.find(record.triangle.barycentric(p));
-  return evaluate_jet<Element::kDegree>(record.element.net(place.piece),
-                                        record.element.frame(place.piece, record.triangle.frame()), place.at);
+Jet element_jet(const Element& element, const MacroTriangle& triangle, Vec2 p) {
+  const PiecePoint place = element.find(triangle.barycentric(p));
+  return evaluate_jet<Element::kDegree>(element.net(place.piece), element.frame(place.piece, triangle.frame()),
+                                        place.at);
 }
 
 }  // namespace retalho

@@ -28,11 +28,6 @@ struct Target {
   }
 };
 
-Corners corners_of(const Tin& tin, std::uint32_t triangle) {
-  const auto& v = tin.triangles[triangle];
-  return {tin.points[v[0]], tin.points[v[1]], tin.points[v[2]]};
-}
-
 /// For each band of rows the triangles that touch it, ascending.
 struct Bands {
   std::vector<RowRange> rows;  // of each triangle
@@ -40,13 +35,13 @@ struct Bands {
   std::vector<std::uint32_t> triangles;
 };
 
-Bands sort_into_bands(const Tin& tin, const RowGrid& grid, const Context& context) {
+Bands sort_into_bands(const PointLocator& locator, std::size_t triangles, const RowGrid& grid, const Context& context) {
   Bands bands;
   std::vector<RowRange>& ranges = bands.rows;
-  ranges.resize(tin.triangle_count());
+  ranges.resize(triangles);
   parallel_chunks(ranges.size(), 16384, context, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      ranges[t] = row_range(corners_of(tin, static_cast<std::uint32_t>(t)), grid, 1 / grid.step.y);
+      ranges[t] = row_range(locator.facet(static_cast<std::uint32_t>(t)).corners, grid, 1 / grid.step.y);
   });
   bands.begin.assign(static_cast<std::size_t>((grid.rows + kBand - 1) / kBand) + 1, 0);
   const auto each = [&](const auto& use) {
@@ -62,41 +57,34 @@ Bands sort_into_bands(const Tin& tin, const RowGrid& grid, const Context& contex
   return bands;
 }
 
-/// The numbers of a TIN's triangles often jump about; what lies ahead in the list is asked for in time.
-template <class Element>
-void prefetch(const Tin& tin, const std::vector<TriangleRecord<Element>>& records,
-              std::span<const std::uint32_t> triangles, std::size_t k) {
-  if (k + 8 < triangles.size()) __builtin_prefetch(&tin.triangles[triangles[k + 8]]);
-  if (k + 4 >= triangles.size()) return;
-  const std::uint32_t t = triangles[k + 4];
-  for (const std::uint32_t v : tin.triangles[t]) __builtin_prefetch(&tin.points[v]);
-  const char* record = reinterpret_cast<const char*>(&records[t]);
-  for (std::size_t line = 0; line < sizeof records[t]; line += 64) __builtin_prefetch(record + line);
-}
-
 /// Heights and gradients of the triangles, in their order, on the rows first_row..last_row.
 template <class Element>
-void fill_rows(const Tin& tin, const std::vector<TriangleRecord<Element>>& records, const Bands& bands,
-               std::size_t band, const Target& target, int first_row, int last_row) {
+void fill_rows(const PointLocator& locator, const std::vector<Element>& elements, const Bands& bands, std::size_t band,
+               const Target& target, int first_row, int last_row) {
   const RowGrid& grid = target.grid;
   const Vec2 cells_a_unit{1 / grid.step.x, 1 / grid.step.y};
   const std::span triangles(bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band]),
                             bands.triangles.begin() + static_cast<std::ptrdiff_t>(bands.begin[band + 1]));
   RowFan<Element> fan;
   for (std::size_t k = 0; k < triangles.size(); ++k) {
-    prefetch(tin, records, triangles, k);
+    // The numbers of a TIN's triangles may jump about: what lies ahead in the list is asked for in time.
+    if (k + 4 < triangles.size()) {
+      __builtin_prefetch(&locator.facet(triangles[k + 4]));
+      prefetch(elements[triangles[k + 4]]);
+    }
     const std::uint32_t t = triangles[k];
-    const TriangleRecord<Element>& record = records[t];
-    const Corners corners = corners_of(tin, t);
+    const Element& element = elements[t];
+    const Corners& corners = locator.facet(t).corners;
+    const MacroTriangle triangle(corners);
     const RowRange rows{std::max(bands.rows[t].first, first_row), std::min(bands.rows[t].last, last_row)};
-    fan.begin(record, corners, grid, cells_a_unit.x);
+    fan.begin(element, triangle, corners, grid, cells_a_unit.x);
     for_each_row_span(corners, grid, cells_a_unit.x, rows, [&](int row, int first, int last) {
       if (target.gradients.empty()) {
         fan.fill(row, grid.y(row), first, last, &target.out[target.cell(first, row)]);
         return;
       }
       for (int c = first; c <= last; ++c) {
-        const Jet jet = element_jet(record, grid.at(c, row));
+        const Jet jet = element_jet(element, triangle, grid.at(c, row));
         target.out[target.cell(c, row)] = jet.value;
         target.gradients[target.cell(c, row)] = jet.gradient;
       }
@@ -125,12 +113,12 @@ void TerrainEvaluator::grid_values(Vec2 origin, Vec2 step, int columns, int rows
                                  gradients.size()));
   const Tin& tin = parts_->terrain.tin;
   const Target target{{origin, step, columns, rows}, out, gradients};
-  const Bands bands = sort_into_bands(tin, target.grid, context);
+  const Bands bands = sort_into_bands(parts_->locator, tin.triangle_count(), target.grid, context);
   parallel_chunks(bands.begin.size() - 1, 1, context, [&](std::size_t band, std::size_t) {
     const int first_row = static_cast<int>(band) * kBand, last_row = std::min(rows, first_row + kBand) - 1;
     erase(target, target.cell(0, first_row), target.cell(0, last_row + 1));
-    parts_->with_records(
-        [&](const auto& records) { fill_rows(tin, records, bands, band, target, first_row, last_row); });
+    parts_->with_elements(
+        [&](const auto& elements) { fill_rows(parts_->locator, elements, bands, band, target, first_row, last_row); });
     if (!parts_->has_voids) return;
     for (int row = first_row; row <= last_row; ++row)
       for (int c = 0; c < columns; ++c)

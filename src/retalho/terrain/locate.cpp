@@ -10,11 +10,8 @@
 namespace retalho {
 namespace {
 
-/// Does the closed triangle hold `p`?
-bool holds(const Tin& tin, std::uint32_t triangle, Vec2 p) {
-  const auto& v = tin.triangles[triangle];
-  const Vec2 a = tin.points[v[0]], b = tin.points[v[1]], c = tin.points[v[2]];
-  return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
+bool holds(const Corners& c, Vec2 p) {
+  return orientation(c[0], c[1], p) >= 0 && orientation(c[1], c[2], p) >= 0 && orientation(c[2], c[0], p) >= 0;
 }
 
 /// The corner of `triangle` at vertex `v`.
@@ -37,9 +34,16 @@ PointLocator::PointLocator(const Tin& tin, const Context& context) : tin_(tin) {
     }
   convex_ = outline_is_convex();
   if (tin.triangles.empty()) return;
+  facets_.resize(tin.triangles.size());
+  parallel_chunks(facets_.size(), 16384, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& v = tin.triangles[t];
+      facets_[t] = {{tin.points[v[0]], tin.points[v[1]], tin.points[v[2]]}, tin.neighbors[t]};
+    }
+  });
   const double width = high_.x - low_.x, height = high_.y - low_.y;
-  // Two cells a triangle: the hint is mostly the triangle itself or its neighbour.
-  const double side = std::sqrt(width * height / (2 * static_cast<double>(tin.triangles.size())));
+  // Four cells a triangle: the hint is mostly the triangle itself or its neighbour.
+  const double side = std::sqrt(width * height / (4 * static_cast<double>(tin.triangles.size())));
   const auto cells = [&](double length) { return static_cast<int>(std::clamp(length / side, 1.0, 32768.0)); };
   if (side > 0) {
     columns_ = cells(width);
@@ -67,14 +71,14 @@ PointLocator::Step PointLocator::walk(Vec2 p, std::uint32_t from) const {
   // and the limit sends hopeless cases to the full search.
   const std::size_t limit = 64 + 4 * tin_.triangles.size();
   for (std::size_t step = 0; step < limit; ++step) {
-    const auto& v = tin_.triangles[t];
-    const auto& n = tin_.neighbors[t];
+    const Corners& c = facets_[t].corners;
+    const auto& n = facets_[t].neighbors;
     const std::size_t first = step < 4096 ? 0 : (step * 2654435761U >> 7) % 3;
     bool moved = false, border = false, on_edge = false;
     for (std::size_t m = 0; m < 3 && !moved; ++m) {
       const std::size_t k = (first + m) % 3;
       if (n[k] != kNone && n[k] == previous) continue;  // it came through this edge: p is on this side
-      const int turn = orientation(tin_.points[v[(k + 1) % 3]], tin_.points[v[(k + 2) % 3]], p);
+      const int turn = orientation(c[(k + 1) % 3], c[(k + 2) % 3], p);
       on_edge |= turn == 0;
       if (turn >= 0) continue;
       if (n[k] == kNone) {
@@ -126,7 +130,7 @@ std::uint32_t PointLocator::locate(Vec2 p, std::uint32_t hint) const {
 
 std::uint32_t PointLocator::search_all(Vec2 p) const {
   for (auto t = static_cast<std::uint32_t>(tin_.triangles.size()); t-- > 0;)
-    if (holds(tin_, t, p)) return t;
+    if (holds(facets_[t].corners, p)) return t;
   return kNone;
 }
 

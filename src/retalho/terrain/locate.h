@@ -2,13 +2,23 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "retalho/core/context.h"
+#include "retalho/terrain/orientation.h"
 #include "retalho/tin/tin.h"
 
 namespace retalho {
+
+using Corners = std::array<Vec2, 3>;
+
+/// What a step of the walk needs to know of a triangle: one line of memory.
+struct alignas(64) Facet {
+  Corners corners;
+  std::array<std::uint32_t, 3> neighbors;  ///< across the edge opposite corner k
+};
 
 /// Refers to the TIN, which must outlive it. Safe to use from several threads at once.
 ///
@@ -30,6 +40,13 @@ class PointLocator {
   /// kNone: outside, or not a number.
   std::uint32_t locate(Vec2 p, std::uint32_t hint = kNone) const;
 
+  const Facet& facet(std::uint32_t triangle) const { return facets_[triangle]; }
+  /// Does `p` lie inside the triangle, and not on its border? Exact.
+  bool holds_inside(std::uint32_t triangle, Vec2 p) const {
+    const Corners& c = facets_[triangle].corners;
+    return orientation(c[0], c[1], p) > 0 && orientation(c[1], c[2], p) > 0 && orientation(c[2], c[0], p) > 0;
+  }
+
  private:
   struct Step {
     std::uint32_t triangle;
@@ -41,6 +58,7 @@ class PointLocator {
   bool outline_is_convex() const;
 
   const Tin& tin_;
+  std::vector<Facet> facets_;
   Vec2 low_, high_;
   bool convex_ = false;
   int columns_ = 1, rows_ = 1;

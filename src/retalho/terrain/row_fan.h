@@ -18,7 +18,7 @@ namespace retalho {
 /// The net of the blossom with one argument set to direction `d` (whose coordinates sum to 0): the derivative along `d`
 /// without the factor Degree.
 template <int Degree>
-TriangleNet<Degree - 1> contract(const TriangleNet<Degree>& b, Barycentric d) {
+[[gnu::always_inline]] inline TriangleNet<Degree - 1> contract(const TriangleNet<Degree>& b, Barycentric d) {
   TriangleNet<Degree - 1> c{};
   for (int i = Degree - 1; i >= 0; --i)
     for (int j = Degree - 1 - i; j >= 0; --j) {
@@ -129,31 +129,32 @@ class RowFan {
 
  public:
   /// Starts on a triangle.
-  void begin(const TriangleRecord<Element>& record, const Corners& corners, const RowGrid& grid,
+  void begin(const Element& element, const MacroTriangle& triangle, const Corners& corners, const RowGrid& grid,
              double columns_a_unit) {
-    record_ = &record;
+    element_ = &element;
+    triangle_ = &triangle;
     grid_ = &grid;
     ready_ = 0;
-    flat_ = !(record.triangle.flatness() < kFlat);
+    flat_ = !(triangle.flatness() < kFlat);
     if (flat_) return;
-    const Barycentric w = fan_centre(record.element);
+    const Barycentric w = fan_centre(element);
     const Vec2 centre = corners[0] + (w.s * (corners[1] - corners[0]) + w.t * (corners[2] - corners[0]));
     centre_y_ = centre.y;
     centre_column_ = (centre.x - grid.origin.x) * columns_a_unit;
-    along_x_ = record.triangle.along_x(grid.step.x);
-    along_y_ = record.triangle.along_y();
+    along_x_ = triangle.along_x(grid.step.x);
+    along_y_ = triangle.along_y();
     const auto [x0, x1] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
     const auto [y0, y1] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
     most_x_ = kStretch / ((x1 - x0) * columns_a_unit);
     most_y_ = kStretch / (y1 - y0);
-    spread(Shape::ends(record.element, corners), columns_a_unit);
+    spread(Shape::ends(element, corners), columns_a_unit);
   }
 
   /// Heights of the cells first..last of a row at height y.
   void fill(int row, double y, int first, int last, double* out) {
     if (flat_) {
       for (int c = first; c <= last; ++c)
-        out[c - first] = element_value(record_->element, record_->triangle.barycentric(grid_->at(c, row)));
+        out[c - first] = element_value(*element_, triangle_->barycentric(grid_->at(c, row)));
       return;
     }
     const double v = y - centre_y_;
@@ -221,12 +222,12 @@ class RowFan {
     if (ready_ >> number & 1U) return sector;
     ready_ |= 1U << number;
     const int piece = Shape::piece(number);
-    const typename Element::Map map(record_->element, piece);
+    const typename Element::Map map(*element_, piece);
     const Barycentric dx = map(along_x_), dy = map(along_y_);
     const double stretch_x = std::max(std::abs(dx.r), std::max(std::abs(dx.s), std::abs(dx.t)));
     const double stretch_y = std::max(std::abs(dy.r), std::max(std::abs(dy.s), std::abs(dy.t)));
     sector.tame = stretch_x < most_x_ && stretch_y < most_y_;
-    sector.polynomial = Polynomial(record_->element.net(piece), dx, dy);
+    sector.polynomial = Polynomial(element_->net(piece), dx, dy);
     return sector;
   }
 
@@ -235,7 +236,7 @@ class RowFan {
     const int count = end - from;
     if (!sector.tame) {
       for (int n = 0; n < count; ++n)
-        out[n] = element_value(record_->element, record_->triangle.barycentric(grid_->at(from + n, row)));
+        out[n] = element_value(*element_, triangle_->barycentric(grid_->at(from + n, row)));
       return;
     }
     const auto polynomial = sector.polynomial.row(v);
@@ -253,7 +254,8 @@ class RowFan {
     if (n < count) out[n] = polynomial(at);
   }
 
-  const TriangleRecord<Element>* record_ = nullptr;
+  const Element* element_ = nullptr;
+  const MacroTriangle* triangle_ = nullptr;
   const RowGrid* grid_ = nullptr;
   bool flat_ = false;
   unsigned ready_ = 0;
@@ -267,18 +269,20 @@ class RowFan {
 template <>
 class RowFan<LinearElement> {
  public:
-  void begin(const TriangleRecord<LinearElement>& record, const Corners&, const RowGrid& grid, double) {
-    record_ = &record;
+  void begin(const LinearElement& element, const MacroTriangle& triangle, const Corners&, const RowGrid& grid, double) {
+    element_ = &element;
+    triangle_ = &triangle;
     grid_ = &grid;
-    change_ = contract<1>(record.element.corner, record.triangle.along_x(grid.step.x))[0];
+    change_ = contract<1>(element.corner, triangle.along_x(grid.step.x))[0];
   }
   void fill(int row, double, int first, int last, double* out) {
-    const double start = element_value(record_->element, record_->triangle.barycentric(grid_->at(first, row)));
+    const double start = element_value(*element_, triangle_->barycentric(grid_->at(first, row)));
     for (int n = 0; n <= last - first; ++n) out[n] = start + n * change_;
   }
 
  private:
-  const TriangleRecord<LinearElement>* record_ = nullptr;
+  const LinearElement* element_ = nullptr;
+  const MacroTriangle* triangle_ = nullptr;
   const RowGrid* grid_ = nullptr;
   double change_ = 0;
 };

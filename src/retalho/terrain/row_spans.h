@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "retalho/core/vec.h"
+#include "retalho/terrain/locate.h"
 #include "retalho/terrain/orientation.h"
 
 namespace retalho {
@@ -31,8 +32,6 @@ inline int clamped_floor(double v, int most) {
   const int whole = static_cast<int>(clamped);
   return whole - (clamped < whole);
 }
-
-using Corners = std::array<Vec2, 3>;
 
 /// The rows whose height lies within the closed triangle.
 inline RowRange row_range(const Corners& c, const RowGrid& grid, double rows_a_unit) {
