@@ -1,6 +1,7 @@
 #include "retalho/terrain/locate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -65,6 +66,27 @@ PointLocator::PointLocator(const Tin& tin, const Context& context) : tin_(tin) {
   });
 }
 
+std::uint32_t PointLocator::quick_walk(Vec2 p, std::uint32_t& from) const {
+  for (int step = 0; step < 64; ++step) {
+    const Facet& f = facets_[from];
+    // The three orientations at once, each with the bound of its rounding (orientation.h): one branch in the usual
+    // case.
+    std::array<double, 3> det, bound;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 a = f.corners[(k + 1) % 3] - p, b = f.corners[(k + 2) % 3] - p;
+      const double left = a.x * b.y, right = a.y * b.x;
+      det[k] = left - right;
+      bound[k] = kOrientationBound * (std::abs(left) + std::abs(right));
+    }
+    if (std::min(det[0] - bound[0], std::min(det[1] - bound[1], det[2] - bound[2])) > 0) return from;
+    std::size_t k = det[1] < det[0] ? 1 : 0;
+    k = det[2] < det[k] ? 2 : k;
+    if (!(det[k] < -bound[k]) || f.neighbors[k] == kNone) return kNone;
+    from = f.neighbors[k];
+  }
+  return kNone;
+}
+
 PointLocator::Step PointLocator::walk(Vec2 p, std::uint32_t from) const {
   std::uint32_t t = from, previous = kNone;
   // On a Delaunay triangulation the walk cannot turn in a circle; on another the changing first edge breaks circles,
@@ -123,6 +145,7 @@ std::uint32_t PointLocator::locate(Vec2 p, std::uint32_t hint) const {
   const std::uint32_t near = this->hint(p);
   if (near == kNone) return kNone;
   if (hint >= tin_.triangles.size()) hint = near;
+  if (quick_walk(p, hint) != kNone) return hint;
   const Step end = walk(p, hint);
   if (end.inside) return end.on_edge ? owner(p, end.triangle) : end.triangle;
   return convex_ ? kNone : search_all(p);

@@ -52,6 +52,9 @@ class PointLocator {
     std::uint32_t triangle;
     bool inside, on_edge;
   };
+  /// Where the floating-point filter decides every step and `p` ends up off all edges: its triangle. Else kNone, and
+  /// `from` is as near as it came.
+  std::uint32_t quick_walk(Vec2 p, std::uint32_t& from) const;
   Step walk(Vec2 p, std::uint32_t from) const;
   std::uint32_t owner(Vec2 p, std::uint32_t triangle) const;
   std::uint32_t search_all(Vec2 p) const;

@@ -10,6 +10,10 @@
 
 namespace retalho {
 
+/// Rounding of a two-by-two determinant of differences, relative to the sum of its products' sizes: (3 + 16 eps) eps,
+/// eps = 2^-53.
+inline constexpr double kOrientationBound = 3.3306690738754716e-16;
+
 /// The slow path of `orientation`: always exact.
 int exact_orientation(Vec2 a, Vec2 b, Vec2 c);
 
@@ -17,7 +21,7 @@ int exact_orientation(Vec2 a, Vec2 b, Vec2 c);
 inline int orientation(Vec2 a, Vec2 b, Vec2 c) {
   const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x);
   const double det = left - right;
-  const double bound = 3.3306690738754716e-16 * (std::abs(left) + std::abs(right));  // (3 + 16 eps) eps, eps = 2^-53
+  const double bound = kOrientationBound * (std::abs(left) + std::abs(right));
   if (det > bound) return 1;
   if (-det > bound) return -1;
   return exact_orientation(a, b, c);
