@@ -86,7 +86,6 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
     if (at == std::string_view::npos) break;
     line.remove_prefix(at + 1);
   }
-  if (fields.size() > 1 && fields.back().empty()) fields.pop_back();  // a separator at the end of the line
 }
 
 /// ';' before tab before ',' before blanks: commas only where they stand between values and not inside them.
@@ -195,6 +194,7 @@ class Parser {
     }
     started_ = true;
     separator_ = separator;
+    if (!columns_.named && fields_.back().empty()) fields_.pop_back();  // a separator at the end of the line
     width_ = fields_.size();
     if (!columns_.named && width_ >= 6) columns_.count = 6;
     return true;
@@ -217,6 +217,7 @@ class Parser {
   }
 
   void point() {
+    if (fields_.size() == width_ + 1 && fields_.back().empty()) fields_.pop_back();
     if (fields_.size() != width_) {
       refuse_decimal_commas();
       fail(fmt::format("{} values, where the first point has {}", fields_.size(), width_));

@@ -114,6 +114,7 @@ void put_rows(GDALDataset& dataset, const Raster& raster, double nodata, const G
           const CPLErr outcome = band.RasterIO(GF_Write, 0, row, raster.columns, rows, buffer.data(), raster.columns,
                                                rows, sizeof(Height) == 8 ? GDT_Float64 : GDT_Float32, 0, 0, nullptr);
           if (outcome != CE_None || messages.failed()) return;  // the caller looks at the messages
+          band.FlushCache(false);                               // else GDAL's cache fills with blocks that are done
           context.report("write", static_cast<double>(row + rows) / raster.rows);
         }
       },
