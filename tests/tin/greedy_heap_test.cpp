@@ -84,8 +84,7 @@ void check(const Raster& r, const GridTin& tin, double tolerance) {
             << x << ' ' << y;
       }
   }
-  for (std::size_t i = 0; i < r.cells(); ++i)
-    ASSERT_TRUE(covered[i] || std::isnan(r.at(i))) << i;
+  for (std::size_t i = 0; i < r.cells(); ++i) ASSERT_TRUE(covered[i] || std::isnan(r.at(i))) << i;
 }
 
 TEST(GreedyHeap, IsDelaunayAndWithinToleranceAtEveryValidCell) {

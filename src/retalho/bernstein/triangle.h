@@ -20,7 +20,9 @@ struct Barycentric {
 };
 
 /// How many ordinates a polynomial of this degree has.
-constexpr int ordinate_count(int degree) { return (degree + 1) * (degree + 2) / 2; }
+constexpr int ordinate_count(int degree) {
+  return (degree + 1) * (degree + 2) / 2;
+}
 
 /// Where ordinate (i, j, k), i + j + k = degree, stands.
 constexpr int ordinate_index(int degree, int i, int j) {

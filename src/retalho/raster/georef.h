@@ -13,10 +13,10 @@ namespace retalho {
 
 struct Georef {
   double origin_x = 0, origin_y = 0;  ///< CRS coordinates of the local origin
-  double scale_x = 1, scale_y = 1;    ///< local units per CRS unit (metres a degree where the CRS is geographic, else 1)
-  std::string crs_wkt;                ///< empty: no CRS
-  std::string unit = "unit";          ///< name of the local unit: "metre", "US survey foot", "unit" (none known)
-  bool geographic = false;            ///< the CRS is in degrees and scale_* are metres by the mean latitude
+  double scale_x = 1, scale_y = 1;  ///< local units per CRS unit (metres a degree where the CRS is geographic, else 1)
+  std::string crs_wkt;              ///< empty: no CRS
+  std::string unit = "unit";        ///< name of the local unit: "metre", "US survey foot", "unit" (none known)
+  bool geographic = false;          ///< the CRS is in degrees and scale_* are metres by the mean latitude
 
   Vec2 to_local(Vec2 crs) const { return {(crs.x - origin_x) * scale_x, (crs.y - origin_y) * scale_y}; }
   Vec2 to_crs(Vec2 local) const { return {origin_x + local.x / scale_x, origin_y + local.y / scale_y}; }

@@ -12,7 +12,10 @@ class Mask {
  public:
   Mask() = default;
   Mask(int columns, int rows, bool value)
-      : columns_(columns), rows_(rows), stride_((static_cast<std::size_t>(columns) + 63) / 64), words_(stride_ * static_cast<std::size_t>(rows)) {
+      : columns_(columns),
+        rows_(rows),
+        stride_((static_cast<std::size_t>(columns) + 63) / 64),
+        words_(stride_ * static_cast<std::size_t>(rows)) {
     if (value)
       for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) set(c, r, true);
@@ -45,7 +48,9 @@ class Mask {
   friend bool operator==(const Mask&, const Mask&) = default;
 
  private:
-  std::size_t word(int column, int row) const { return static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column) / 64; }
+  std::size_t word(int column, int row) const {
+    return static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column) / 64;
+  }
 
   int columns_ = 0, rows_ = 0;
   std::size_t stride_ = 0;

@@ -21,7 +21,7 @@ struct Raster {
   int columns = 0, rows = 0;
   double cell_width = 1, cell_height = 1;  ///< in local units (Georef), both > 0
   Georef georef;
-  std::string height_unit;                 ///< as the file says, or empty
+  std::string height_unit;                                        ///< as the file says, or empty
   std::variant<std::vector<float>, std::vector<double>> heights;  ///< row-major; NaN is void
 
   std::size_t cells() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }

@@ -192,8 +192,8 @@ class Assessment {
     report.rmse = std::sqrt(all.squares / static_cast<double>(all.covered));
     report.max_error = all.largest;
     const auto columns = static_cast<std::size_t>(raster_.columns);
-    report.max_error_at = raster_.georef.to_crs(raster_.centre(static_cast<double>(all.largest_cell % columns),
-                                                               static_cast<double>(all.largest_cell / columns)));
+    const auto column = all.largest_cell % columns, row = all.largest_cell / columns;
+    report.max_error_at = raster_.georef.to_crs(raster_.centre(static_cast<double>(column), static_cast<double>(row)));
     report.slope_rmse = all.slopes ? std::sqrt(all.slope_squares / static_cast<double>(all.slopes)) : 0;
     return report;
   }

@@ -28,7 +28,7 @@ struct GridTin {
   std::vector<std::uint32_t> cells;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from above, north up
   std::vector<std::array<std::uint32_t, 3>> neighbors;  ///< as in Tin
-  double max_error = 0;                                 ///< of the flat TIN over all valid cells, as refinement knows it
+  double max_error = 0;  ///< of the flat TIN over all valid cells, as refinement knows it
 };
 
 /// Throws BadInput: fewer than three valid cells not on one line ("no area"), a side over 65,535 cells.

@@ -25,9 +25,9 @@ struct Tin {
 /// Undirected edges, numbered by the first triangle corner that meets them (triangle order, then corner order): a rule
 /// that depends on `triangles` alone, so that per-edge data in a file need no indices.
 struct EdgeTable {
-  std::vector<std::array<std::uint32_t, 2>> vertices;    ///< low index first
-  std::vector<std::array<std::uint32_t, 2>> triangles;   ///< the one or two triangles; kNone second: border
-  std::vector<std::array<std::uint32_t, 3>> of_triangle; ///< edge opposite corner k of each triangle
+  std::vector<std::array<std::uint32_t, 2>> vertices;     ///< low index first
+  std::vector<std::array<std::uint32_t, 2>> triangles;    ///< the one or two triangles; kNone second: border
+  std::vector<std::array<std::uint32_t, 3>> of_triangle;  ///< edge opposite corner k of each triangle
 };
 EdgeTable build_edges(const Tin& tin);
 
