@@ -4,7 +4,9 @@ find_program(FLATC_PROGRAM flatc REQUIRED)
 find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as a header: no library to link
 
-# retalho_flatbuffers(TARGET SCHEMA): generates <SCHEMA's name>_generated.h for TARGET's sources to include as
+include(GNUInstallDirs)
+
+# retalho_flatbuffers(TARGET SCHEMA): installs the schema as share/retalho/<name>.fbs and generates <SCHEMA's name>_generated.h for TARGET's sources to include as
 # "retalho/<room>/<name>_generated.h".
 function(retalho_flatbuffers target schema)
   get_filename_component(name "${schema}" NAME_WE)
@@ -18,6 +20,7 @@ function(retalho_flatbuffers target schema)
     DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${schema}"
     COMMENT "flatc ${schema}"
     VERBATIM)
+  install(FILES "${schema}" DESTINATION "${CMAKE_INSTALL_DATADIR}/retalho")
   target_sources(${target} PRIVATE "${output}")
   target_include_directories(${target} SYSTEM PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/generated"
                              "${FLATBUFFERS_INCLUDE_DIR}" "${XXHASH_INCLUDE_DIR}")

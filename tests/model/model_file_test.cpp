@@ -4,11 +4,10 @@
 #include <rapidcheck/gtest.h>
 #include <unistd.h>
 
-#include <bit>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 
+#include "identical.h"
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
@@ -17,31 +16,9 @@
 namespace retalho {
 namespace {
 
+using test::identical;
 using test::sample_terrain;
 using test::SampleOptions;
-
-template <typename T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-/// Every member of the model, compared by its bits.
-bool identical(const Terrain& a, const Terrain& b) {
-  const Georef &g = a.georef, &h = b.georef;
-  return a.kind == b.kind && a.cross_derivative == b.cross_derivative && a.gradient_kind == b.gradient_kind &&
-         same_bits(g.origin_x, h.origin_x) && same_bits(g.origin_y, h.origin_y) && same_bits(g.scale_x, h.scale_x) &&
-         same_bits(g.scale_y, h.scale_y) && g.crs_wkt == h.crs_wkt && g.unit == h.unit &&
-         g.geographic == h.geographic && a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows &&
-         same_bits(a.grid.cell_width, b.grid.cell_width) && same_bits(a.grid.cell_height, b.grid.cell_height) &&
-         a.grid.valid == b.grid.valid && same_bytes(a.tin.points, b.tin.points) &&
-         same_bytes(a.tin.heights, b.tin.heights) && same_bytes(a.tin.triangles, b.tin.triangles) &&
-         same_bytes(a.tin.neighbors, b.tin.neighbors) && same_bytes(a.gradients, b.gradients) &&
-         same_bytes(a.edge_split, b.edge_split) && same_bytes(a.edge_fallback, b.edge_fallback) &&
-         same_bits(a.tolerance, b.tolerance);
-}
 
 Terrain round_trip(const Terrain& t) {
   return std::get<Terrain>(decode_model(encode_model(t)));

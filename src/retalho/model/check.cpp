@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retalho/tin/predicates.h"
+
 namespace retalho {
 namespace {
 
@@ -47,7 +49,7 @@ std::string grid_fault(const GridDomain& grid) {
   return {};
 }
 
-std::string tin_fault(const Tin& tin) {
+std::string tin_fault(const Tin& tin, bool neighbors_built) {
   if (tin.points.size() >= kNone || tin.triangles.size() >= kNone / 3)
     return "more vertices or triangles than 32 bits can number";
   if (tin.heights.size() != tin.points.size())
@@ -55,14 +57,16 @@ std::string tin_fault(const Tin& tin) {
   if (tin.triangles.empty()) return "no triangles";
   if (std::string fault = not_finite(tin.points, "position"); !fault.empty()) return fault;
   if (std::string fault = not_finite(tin.heights, "height"); !fault.empty()) return fault;
-  Tin twin;
-  twin.points = tin.points;
-  twin.triangles = tin.triangles;
-  build_neighbors(twin);
-  if (twin.neighbors != tin.neighbors) return "the triangles' neighbours are not those that share their edges";
+  if (!neighbors_built) {
+    Tin twin;
+    twin.points = tin.points;
+    twin.triangles = tin.triangles;
+    build_neighbors(twin);
+    if (twin.neighbors != tin.neighbors) return "the triangles' neighbours are not those that share their edges";
+  }
   for (std::size_t t = 0; t < tin.triangles.size(); ++t) {
     const auto& v = tin.triangles[t];
-    if (!(cross(tin.points[v[1]] - tin.points[v[0]], tin.points[v[2]] - tin.points[v[0]]) > 0))
+    if (orientation(tin.points[v[0]], tin.points[v[1]], tin.points[v[2]]) <= 0)
       return fmt::format("triangle {} is not counter-clockwise", t);
   }
   return {};
@@ -100,13 +104,14 @@ std::size_t edge_count(const Tin& tin) {
   return (3 * tin.triangles.size() + border) / 2;
 }
 
-std::string find_fault(const Terrain& terrain) {
+std::string find_fault(const Terrain& terrain, bool neighbors_built) {
   if (terrain.kind < SurfaceKind::linear || terrain.kind > SurfaceKind::clough_tocher)
     return "an unknown kind of surface";
   if (terrain.cross_derivative > CrossDerivative::cubic) return "an unknown rule for cross derivatives";
   if (terrain.gradient_kind > GradientKind::given) return "an unknown kind of gradients";
   if (!(terrain.tolerance >= 0 && finite(terrain.tolerance))) return "the tolerance is not a number from 0 up";
-  for (const auto& fault : {georef_fault(terrain.georef), grid_fault(terrain.grid), tin_fault(terrain.tin)})
+  for (const auto& fault :
+       {georef_fault(terrain.georef), grid_fault(terrain.grid), tin_fault(terrain.tin, neighbors_built)})
     if (!fault.empty()) return fault;
   return surface_fault(terrain);
 }

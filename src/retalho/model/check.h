@@ -16,6 +16,7 @@ std::size_t edge_count(const Tin& tin);
 /// indices in range, triangles counter-clockwise (exactly) with neighbours as build_neighbors finds them, and arrays as
 /// long as the surface kind says. It does not ask whether far triangles overlap. Throws BadInput where build_neighbors
 /// does.
-std::string find_fault(const Terrain& terrain);
+/// `neighbors_built`: build_neighbors has just made the neighbours, they need no look.
+std::string find_fault(const Terrain& terrain, bool neighbors_built = false);
 
 }  // namespace retalho

@@ -15,9 +15,13 @@ std::string encode_model(const Model& model) {
   return seal(encode_content(model));
 }
 
-Model decode_model(std::string_view bytes, const std::string& file) {
+Model decode_model(std::string_view bytes, const std::string& file, ModelFileNotes* notes) {
   try {
-    return decode_content(unseal(bytes).content);
+    const Envelope envelope = unseal(bytes);
+    std::string created_by;
+    Model model = decode_content(envelope.content, &created_by);
+    if (notes) *notes = {envelope.major, envelope.minor, created_by, bytes.size()};
+    return model;
   } catch (const CannotRead& e) {
     throw CannotRead(file.empty() ? fmt::format("cannot read the model: {}", e.what())
                                   : fmt::format("cannot read '{}': {}", file, e.what()),
@@ -29,8 +33,8 @@ void save_model(const Model& model, const std::string& path, bool overwrite) {
   write_file(path, encode_model(model), overwrite);
 }
 
-Model load_model(const std::string& path) {
-  return decode_model(read_file(path), path);
+Model load_model(const std::string& path, ModelFileNotes* notes) {
+  return decode_model(read_file(path), path, notes);
 }
 
 bool is_model_file(const std::string& path) {

@@ -32,16 +32,16 @@ class AlignedView {
 
 }  // namespace
 
-std::string encode_content(const Model& model) {
+std::string encode_content(const Model& model, bool checked) {
   flatbuffers::FlatBufferBuilder builder(1 << 16);
   const auto created_by = builder.CreateString("retalho " RETALHO_VERSION);
-  const auto surface = encode_terrain(builder, std::get<Terrain>(model));
+  const auto surface = encode_terrain(builder, std::get<Terrain>(model), checked);
   const auto root = fb::CreateModelFile(builder, created_by, fb::Surface::TerrainSurface, surface.Union());
   fb::FinishModelFileBuffer(builder, root);
   return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
 }
 
-Model decode_content(std::string_view content) {
+Model decode_content(std::string_view content, std::string* created_by) {
   const AlignedView bytes(content);
   // Under 12 bytes there is no room for a root, an identifier and a table; the verifier itself wants to be asked less.
   if (bytes.size() < 12 || bytes.size() >= FLATBUFFERS_MAX_BUFFER_SIZE)
@@ -50,6 +50,7 @@ Model decode_content(std::string_view content) {
   if (!fb::VerifyModelFileBuffer(verifier))
     throw CannotRead("the content is not a Retalho model (its FlatBuffer is broken)", {}, "content");
   const fb::ModelFile& file = *fb::GetModelFile(bytes.data());
+  if (created_by) *created_by = file.created_by()->str();
   switch (file.surface_type()) {
     case fb::Surface::TerrainSurface:
       return decode_terrain(*file.surface_as_TerrainSurface());

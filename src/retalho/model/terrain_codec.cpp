@@ -11,6 +11,7 @@
 #include "retalho/core/error.h"
 #include "retalho/model/check.h"
 #include "retalho/model/numbers.h"
+#include "retalho/model/split_prediction.h"
 
 namespace retalho {
 namespace {
@@ -229,6 +230,26 @@ Georef decode_georef(const fb::Georef& table) {
           table.crs_wkt()->str(), table.unit()->str(), table.geographic()};
 }
 
+// --- edges -----------------------------------------------------------------------------------------------------------
+
+/// From the predicted split to the true one, in steps of one representable double.
+std::vector<std::int64_t> split_steps(const Terrain& terrain) {
+  const std::vector<double> predicted = predict_splits(terrain.tin, build_edges(terrain.tin));
+  std::vector<std::int64_t> steps(predicted.size());
+  for (std::size_t e = 0; e < steps.size(); ++e)
+    steps[e] = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(terrain.edge_split[e]) -
+                                         std::bit_cast<std::uint64_t>(predicted[e]));
+  return steps;
+}
+
+std::vector<double> decode_splits(const fb::Numbers* numbers, const Tin& tin) {
+  std::vector<double> splits = predict_splits(tin, build_edges(tin));
+  const std::vector<std::int64_t> steps = unpack_integers(view(numbers, "edge_split"), splits.size(), "edge_split");
+  for (std::size_t e = 0; e < steps.size(); ++e)
+    splits[e] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(splits[e]) + static_cast<std::uint64_t>(steps[e]));
+  return splits;
+}
+
 std::vector<std::uint8_t> decode_flags(const fb::Numbers* numbers, std::uint64_t count) {
   const std::vector<std::int64_t> values = unpack_integers(view(numbers, "edge_fallback"), count, "edge_fallback");
   std::vector<std::uint8_t> flags(values.size());
@@ -240,9 +261,11 @@ std::vector<std::uint8_t> decode_flags(const fb::Numbers* numbers, std::uint64_t
 
 }  // namespace
 
-flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const Terrain& terrain) {
-  if (const std::string fault = find_fault(terrain); !fault.empty())
-    throw BadInput("this terrain cannot be saved: " + fault);
+flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const Terrain& terrain, bool checked) {
+  if (checked) {
+    if (const std::string fault = find_fault(terrain); !fault.empty())
+      throw BadInput("this terrain cannot be saved: " + fault);
+  }
   const Georef& g = terrain.georef;
   const auto wkt = builder.CreateString(g.crs_wkt), unit = builder.CreateString(g.unit);
   const auto georef = fb::CreateGeoref(builder, g.origin_x, g.origin_y, g.scale_x, g.scale_y, wkt, unit, g.geographic);
@@ -255,7 +278,7 @@ flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const T
     gradient_x = add_numbers(builder, pack_component(terrain.gradients, get_x));
     gradient_y = add_numbers(builder, pack_component(terrain.gradients, get_y));
   }
-  if (!terrain.edge_split.empty()) edge_split = add_numbers(builder, pack_reals(terrain.edge_split));
+  if (!terrain.edge_split.empty()) edge_split = add_numbers(builder, pack_integers(split_steps(terrain)));
   if (!terrain.edge_fallback.empty())
     edge_fallback = add_numbers(
         builder, pack_integers(std::vector<std::int64_t>(terrain.edge_fallback.begin(), terrain.edge_fallback.end())));
@@ -304,11 +327,9 @@ Terrain decode_terrain(const fb::TerrainSurface& table) {
         unpack_pairs(table.gradient_x(), table.gradient_y(), table.vertices(), "gradient_x", "gradient_y");
   try {
     build_neighbors(terrain.tin);
-    const std::size_t edges = edge_count(terrain.tin);
-    if (table.edge_split())
-      terrain.edge_split = unpack_reals(view(table.edge_split(), "edge_split"), edges, "edge_split");
-    if (table.edge_fallback()) terrain.edge_fallback = decode_flags(table.edge_fallback(), edges);
-    if (const std::string fault = find_fault(terrain); !fault.empty())
+    if (table.edge_split()) terrain.edge_split = decode_splits(table.edge_split(), terrain.tin);
+    if (table.edge_fallback()) terrain.edge_fallback = decode_flags(table.edge_fallback(), edge_count(terrain.tin));
+    if (const std::string fault = find_fault(terrain, true); !fault.empty())
       throw CannotRead("no terrain: " + fault, {}, "surface");
   } catch (const BadInput& e) {
     throw CannotRead(std::string("no terrain: ") + e.what(), {}, "triangles");

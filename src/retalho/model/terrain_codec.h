@@ -7,9 +7,10 @@
 
 namespace retalho {
 
-/// Throws BadInput when `terrain` has a fault (check.h), CannotWrite when it is too large for one file.
+/// Throws BadInput when `terrain` is to be checked and has a fault (check.h), CannotWrite when it is too large for one
+/// file.
 flatbuffers::Offset<model_file::TerrainSurface> encode_terrain(flatbuffers::FlatBufferBuilder& builder,
-                                                               const Terrain& terrain);
+                                                               const Terrain& terrain, bool checked);
 
 /// `table` has passed FlatBuffers' verifier. Throws CannotRead when what it says is no terrain without a fault.
 Terrain decode_terrain(const model_file::TerrainSurface& table);
