@@ -6,8 +6,8 @@ find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as a header: no library 
 
 include(GNUInstallDirs)
 
-# retalho_flatbuffers(TARGET SCHEMA): installs the schema as share/retalho/<name>.fbs and generates <SCHEMA's name>_generated.h for TARGET's sources to include as
-# "retalho/<room>/<name>_generated.h".
+# retalho_flatbuffers(TARGET SCHEMA): installs the schema as share/retalho/<name>.fbs and generates
+# <name>_generated.h for TARGET's sources to include as "retalho/<room>/<name>_generated.h".
 function(retalho_flatbuffers target schema)
   get_filename_component(name "${schema}" NAME_WE)
   get_filename_component(folder "${schema}" DIRECTORY)
