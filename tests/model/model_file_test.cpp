@@ -4,6 +4,8 @@
 #include <rapidcheck/gtest.h>
 #include <unistd.h>
 
+#include <bit>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -11,6 +13,7 @@
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
+#include "retalho/terrain/evaluate.h"
 #include "support/sample_terrain.h"
 
 namespace retalho {
@@ -162,6 +165,25 @@ TEST(ModelFile, SavesAndLoads) {
   EXPECT_FALSE(is_model_file(folder.string()));
   EXPECT_THROW(load_model(other), CannotRead);
   fs::remove_all(folder);
+}
+
+RC_GTEST_PROP(ModelFileProperty, TheModelReadEvaluatesToTheSameBits, ()) {
+  SampleOptions o;
+  o.kind = *rc::gen::element(SurfaceKind::linear, SurfaceKind::powell_sabin, SurfaceKind::clough_tocher);
+  o.cross_derivative = *rc::gen::element(CrossDerivative::perpendicular, CrossDerivative::cubic);
+  o.mask = *rc::gen::arbitrary<bool>();
+  o.on_grid = *rc::gen::arbitrary<bool>();
+  o.seed = *rc::gen::arbitrary<std::uint64_t>();
+  const Terrain saved = sample_terrain(o), read = round_trip(saved);
+  const TerrainEvaluator a(saved), b(read);
+  std::size_t with_data = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec2 p{i % 20 * 0.61 - 0.1, 0.1 - i / 20 * 0.93};
+    const double z = a.value(p);
+    RC_ASSERT(std::bit_cast<std::uint64_t>(z) == std::bit_cast<std::uint64_t>(b.value(p)));
+    with_data += !std::isnan(z);
+  }
+  RC_ASSERT(with_data > 50U);
 }
 
 RC_GTEST_PROP(ModelFileProperty, TheModelReadIsTheModelSavedToTheBit, ()) {
