@@ -22,13 +22,13 @@ struct ModelFileNotes {
 
 /// The file's bytes: the same model gives the same bytes (from the same versions of Retalho and zstd).
 /// Throws BadInput for a model that the checks of decode_model would refuse, CannotWrite for one over 2 GB.
-/// Cost: about 1.2 us a vertex.
+/// Cost: about 2 us a vertex.
 std::string encode_model(const Model& model);
 
 /// The model, equal to the one encoded to the last bit. Throws CannotRead for anything that encode_model did not write:
 /// every proper prefix and every changed byte is refused, before anything is interpreted; content that got past the
 /// checksum is verified as a FlatBuffer, and then as a model (indices, orientation, finite numbers, array lengths).
-/// `file` is its name in messages. Never allocates more than the bytes can stand for. Cost: about 0.5 us a vertex.
+/// `file` is its name in messages. Never allocates more than the bytes can stand for. Cost: about 1 us a vertex.
 Model decode_model(std::string_view bytes, const std::string& file = {}, ModelFileNotes* notes = nullptr);
 
 /// Atomic. Throws as encode_model does, and CannotWrite.
