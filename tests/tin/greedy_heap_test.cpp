@@ -1,5 +1,6 @@
 // The plain greedy refinement: Delaunay, within tolerance at every valid cell, whatever the voids.
 #include "retalho/tin/greedy_heap.h"
+#include "retalho/tin/greedy_tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -96,6 +97,25 @@ TEST(GreedyHeap, IsDelaunayAndWithinToleranceAtEveryValidCell) {
     GridTin tin;
     try {
       tin = refine_grid_by_heap(r, {.max_error = tolerance});
+    } catch (const BadInput&) {
+      continue;
+    }
+    check(r, tin, tolerance);
+    if (testing::Test::HasFatalFailure()) FAIL() << "round " << round;
+    refined += tin.cells.size() > 4 ? 1 : 0;
+  }
+  EXPECT_GT(refined, 150);
+}
+
+TEST(GreedyTiles, IsDelaunayAndWithinToleranceAtEveryValidCell) {
+  std::mt19937 rng(43);
+  int refined = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Raster r = random_grid(rng);
+    const double tolerance = std::uniform_int_distribution<int>(0, 8)(rng);
+    GridTin tin;
+    try {
+      tin = refine_grid_in_tiles(r, {.max_error = tolerance});
     } catch (const BadInput&) {
       continue;
     }

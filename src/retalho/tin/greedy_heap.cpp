@@ -1,10 +1,10 @@
 #include "retalho/tin/greedy_heap.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <queue>
+
+#include "retalho/tin/grid_hull.h"
 
 namespace retalho {
 namespace {
@@ -27,41 +27,10 @@ bool in_circle(Cell a, Cell b, Cell c, Cell d) {
   return value > 0;
 }
 
-/// Corners of the convex hull of the valid cells, turning with area2 > 0; collinear cells are not corners.
-std::vector<Cell> hull_of_valid(const Raster& raster) {
-  std::vector<Cell> ends;  // first and last valid cell of each row, in (y, x) order
-  for (int y = 0; y < raster.rows; ++y) {
-    int first = 0, last = raster.columns - 1;
-    while (first < raster.columns && !raster.valid(first, y)) ++first;
-    if (first == raster.columns) continue;
-    while (!raster.valid(last, y)) --last;
-    ends.push_back({first, y});
-    if (last != first) ends.push_back({last, y});
-  }
-  if (ends.empty()) throw BadInput("no area: the grid holds no valid cell");
-  std::vector<Cell> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t start = hull.size();
-    for (const Cell c : ends) {
-      while (hull.size() >= start + 2 && area2(hull[hull.size() - 2], hull.back(), c) <= 0) hull.pop_back();
-      hull.push_back(c);
-    }
-    hull.pop_back();
-    std::reverse(ends.begin(), ends.end());
-  }
-  if (hull.size() < 3)
-    throw BadInput("no area: the valid cells lie on one line; a triangulation needs three that do not");
-  return hull;
-}
-
 class Refinement {
  public:
   Refinement(const Raster& raster, const RefineOptions& options, const Context& context)
-      : raster_(raster), options_(options), context_(context) {
-    if (raster.columns > 65535 || raster.rows > 65535)
-      throw BadInput(fmt::format("the grid has {} x {} cells; a side may have 65,535: cut it into tiles",
-                                 raster.columns, raster.rows));
-  }
+      : raster_(raster), options_(options), context_(context) {}
 
   GridTin run() {
     start();
@@ -93,7 +62,8 @@ class Refinement {
   }
 
   void start() {
-    const std::vector<Cell> hull = hull_of_valid(raster_);
+    std::vector<Cell> hull;
+    for (const greedy::Cell c : greedy::hull_of_valid(raster_)) hull.push_back(unpack(c));
     vertices_ = hull.size();
     for (std::size_t i = 1; i + 1 < hull.size(); ++i) add({hull[0], hull[i], hull[i + 1]});
     const auto n = static_cast<std::uint32_t>(corner_.size());
@@ -251,34 +221,14 @@ class Refinement {
         for (std::size_t k = 0; k < 3; ++k) {
           if (link_[t][k] != kNone) continue;
           const Cell a = corner_[t][(k + 1) % 3], b = corner_[t][(k + 2) % 3];
-          const bool column = a.x == b.x && (a.x == 0 || a.x == raster_.columns - 1);
-          const bool row = a.y == b.y && (a.y == 0 || a.y == raster_.rows - 1);
-          if (!column && !row) continue;
-          const Cell worst = worst_between(a, b, tolerance);
+          if (!greedy::on_side(pack(a), pack(b), raster_.columns, raster_.rows)) continue;
+          const Cell worst = unpack(greedy::worst_on_side(raster_, pack(a), pack(b), tolerance));
           if (worst == a) continue;
           insert(worst, t);
           changed = true;
           break;
         }
     }
-  }
-
-  /// The worst cell of the straight side a-b over the tolerance, or a. Symmetric: lowest cell from the lower end.
-  Cell worst_between(Cell a, Cell b, double tolerance) const {
-    const Cell low = a.x + a.y <= b.x + b.y ? a : b, high = low == a ? b : a;
-    const std::int64_t n = high.x - low.x + high.y - low.y;
-    const double z0 = height(low), z1 = height(high);
-    double worst = tolerance * static_cast<double>(n);
-    Cell at = a;
-    for (std::int64_t i = 1; i < n; ++i) {
-      const Cell c{low.x + (high.x > low.x ? i : 0), low.y + (high.y > low.y ? i : 0)};
-      const double error = std::abs((height(c) - z0) * static_cast<double>(n) - (z1 - z0) * static_cast<double>(i));
-      if (error > worst) {
-        worst = error;
-        at = c;
-      }
-    }
-    return at;
   }
 
   GridTin result() const {
@@ -302,6 +252,7 @@ class Refinement {
     return tin;
   }
 
+  static Cell unpack(greedy::Cell c) { return {greedy::column_of(c), greedy::row_of(c)}; }
   static std::uint32_t pack(Cell c) { return static_cast<std::uint32_t>(c.y << 16 | c.x); }
 
   const Raster& raster_;

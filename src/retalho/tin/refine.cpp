@@ -1,11 +1,18 @@
 #include "retalho/tin/refine.h"
 
+#include <new>
+
 #include "retalho/tin/greedy_heap.h"
+#include "retalho/tin/greedy_tiles.h"
 
 namespace retalho {
 
 GridTin refine_grid(const Raster& raster, const RefineOptions& options, const Context& context) {
-  return refine_grid_by_heap(raster, options, context);
+  try {
+    return refine_grid_in_tiles(raster, options, context);
+  } catch (const std::bad_alloc&) {  // no address space for the tiles' records: the plain way needs less
+    return refine_grid_by_heap(raster, options, context);
+  }
 }
 
 Tin to_tin(const GridTin& grid_tin, const Raster& raster) {
