@@ -76,6 +76,14 @@ std::string describe(const std::string& path, const Raster& raster, const Raster
   return line;
 }
 
+void check_same_crs(const Georef& a, const std::string& a_file, const Georef& b, const std::string& b_file) {
+  const std::string a_name = crs_name(a.crs_wkt), b_name = crs_name(b.crs_wkt);
+  if (a_name.empty() || b_name.empty() || a_name == b_name) return;
+  throw BadInput(fmt::format("'{}' is in the CRS '{}', '{}' in '{}': bring one into the other's (gdalwarp) first",
+                             a_file, a_name, b_file, b_name),
+                 a_file);
+}
+
 Vec2 parse_point(const std::string& option, const std::string& text) {
   const char* at = text.c_str();
   const std::optional<double> x = take_number(at);

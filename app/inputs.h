@@ -36,6 +36,9 @@ std::string describe(const std::string& path, const Raster& raster, const Raster
 /// The name of a CRS, out of its WKT; empty when there is none.
 std::string crs_name(const std::string& wkt);
 
+/// Throws BadInput when the two files' CRSs have different names; with no CRS on either side they pass.
+void check_same_crs(const Georef& a, const std::string& a_file, const Georef& b, const std::string& b_file);
+
 /// "X,Y" as two finite numbers. Throws UsageError.
 Vec2 parse_point(const std::string& option, const std::string& text);
 /// "800x600" as two whole numbers from 16 to 20,000. Throws UsageError.

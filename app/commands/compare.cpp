@@ -1,0 +1,134 @@
+// retalho compare: models, or the kinds of surface on one triangulation, against the grid that they stand for.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "fitting.h"
+#include "inputs.h"
+#include "retalho/core/error.h"
+#include "retalho/model/model.h"
+#include "retalho/tin/refine.h"
+#include "table.h"
+
+namespace retalho::app {
+namespace {
+
+struct Options {
+  std::string dem;
+  std::vector<std::string> models;
+  GridFlags grid;
+  BudgetFlags budget;
+  bool markdown = false, csv = false;
+};
+
+/// Every kind on the same TIN: the paper's gradients first, then the better ones.
+const std::vector<SurfaceFlags>& kinds() {
+  static const std::vector<SurfaceFlags> all{
+      {"linear", "normals", "perpendicular"},         {"powell-sabin", "normals", "perpendicular"},
+      {"powell-sabin", "quadratic", "perpendicular"}, {"powell-sabin", "network", "perpendicular"},
+      {"clough-tocher", "normals", "perpendicular"},  {"clough-tocher", "quadratic", "perpendicular"},
+      {"clough-tocher", "network", "perpendicular"},  {"clough-tocher", "quadratic", "cubic"}};
+  return all;
+}
+
+std::vector<ModelReport> compare_kinds(const Program& program, const Options& options, const Raster& raster,
+                                       const RasterSummary& summary, const Context& context) {
+  const double range = summary.valid > 0 ? summary.maximum - summary.minimum : 0;
+  const Budget budget = resolve(program, options.budget, summary.valid, range);
+  const Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
+  std::vector<ModelReport> reports;
+  for (const SurfaceFlags& kind : kinds()) {
+    Terrain terrain = make_terrain(tin, raster, resolve(kind), context);
+    terrain.tolerance = budget.max_error;
+    ModelReport report = facts_of(terrain);
+    report.name = kind_text(report);
+    report.bytes = encode_model(terrain).size();
+    report.errors = assess(terrain, raster, budget.max_error, context);
+    reports.push_back(report);
+  }
+  return reports;
+}
+
+std::vector<ModelReport> compare_models(const Options& options, const Raster& raster, const Context& context) {
+  std::vector<ModelReport> reports;
+  for (const std::string& path : options.models) {
+    const Terrain terrain = load_terrain(path);
+    check_same_crs(terrain.georef, path, raster.georef, options.dem);
+    ModelReport report = facts_of(terrain);
+    report.name = path;
+    report.bytes = std::filesystem::file_size(path);
+    report.errors = assess(terrain, raster, terrain.tolerance, context);
+    reports.push_back(report);
+  }
+  return reports;
+}
+
+Table table_of(const std::vector<ModelReport>& reports, bool with_kind) {
+  std::vector<std::string> header{"model"};
+  if (with_kind) header.push_back("surface");
+  for (const char* name :
+       {"vertices", "coefficients", "numbers", "bytes", "RMSE", "maximum", "at", "slope RMSE", "uncovered"})
+    header.push_back(name);
+  Table table(header);
+  for (const ModelReport& r : reports) {
+    std::vector<std::string> row{r.name};
+    if (with_kind) row.push_back(kind_text(r));
+    for (const std::size_t count : {r.vertices, r.coefficients, r.numbers, r.bytes})
+      row.push_back(fmt::format("{}", count));
+    row.push_back(number_text(r.errors.rmse));
+    row.push_back(number_text(r.errors.max_error));
+    row.push_back(fmt::format("{:.8g} {:.8g}", r.errors.max_error_at.x, r.errors.max_error_at.y));
+    row.push_back(number_text(r.errors.slope_rmse));
+    row.push_back(fmt::format("{}", r.errors.uncovered));
+    table.add(row);
+  }
+  return table;
+}
+
+void run(const Program& program, const Options& options) {
+  if (options.models.empty() && !options.budget.given())
+    throw UsageError(
+        "give models to compare with the grid, or --vertices, --max-error or --ratio to compare the kinds");
+  if (!options.models.empty() && options.budget.given())
+    throw UsageError("models and a budget (--vertices, --max-error, --ratio) exclude each other: give one of them");
+  if (static_cast<int>(options.markdown) + static_cast<int>(options.csv) + static_cast<int>(program.json) > 1)
+    throw UsageError("--json, --markdown and --csv exclude each other");
+  const Context context = program.context();
+  RasterSummary summary;
+  const Raster raster = load_grid(program, options.dem, options.grid, summary, context);
+  const bool fitted = options.models.empty();
+  const std::vector<ModelReport> reports =
+      fitted ? compare_kinds(program, options, raster, summary, context) : compare_models(options, raster, context);
+  if (program.json) {
+    nlohmann::ordered_json models = nlohmann::ordered_json::array();
+    for (const ModelReport& report : reports) {
+      nlohmann::ordered_json entry = {{"name", report.name}};
+      entry.update(to_json(report));
+      models.push_back(entry);
+    }
+    return program.print(nlohmann::ordered_json{{"models", models}});
+  }
+  const Table table = table_of(reports, !fitted);
+  program.print(options.markdown ? table.markdown() : options.csv ? table.csv() : table.text());
+}
+
+}  // namespace
+
+void add_compare(CLI::App& root, Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(root, program, "compare", "Models against the grid that they stand for: a table of errors",
+                  "retalho compare dem.tif dem.retalho flat.retalho\n"
+                  "retalho compare dem.tif --vertices 1000\n"
+                  "retalho compare dem.tif --ratio 1% --markdown");
+  command->add_option("DEM", options->dem, "Elevation grid")->required()->type_name("");
+  command->add_option("MODEL", options->models, "Models; none: every kind of surface is fitted and compared")
+      ->type_name("");
+  add_budget_flags(*command, options->budget);
+  add_grid_flags(*command, options->grid);
+  command->add_flag("--markdown", options->markdown, "The table as Markdown");
+  command->add_flag("--csv", options->csv, "The table as CSV");
+  command->callback([options, &program] { run(program, *options); });
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,154 @@
+// retalho fit: an elevation grid or survey points to a terrain model, and its error report.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "fitting.h"
+#include "inputs.h"
+#include "retalho/core/error.h"
+#include "retalho/model/model.h"
+#include "retalho/terrain/point_report.h"
+#include "retalho/tin/refine.h"
+#include "retalho/tin/scattered.h"
+#include "table.h"
+
+namespace retalho::app {
+namespace {
+
+struct Options {
+  std::string input, output;
+  GridFlags grid;
+  PointOptions points;
+  BudgetFlags budget;
+  SurfaceFlags surface;
+};
+
+struct Fit {
+  Terrain terrain;
+  ErrorReport errors;
+  bool has_slope = true;
+  double seconds_triangulation = 0;
+};
+
+Fit fit_grid(const Program& program, const Options& options, const SurfaceOptions& surface, const Context& context) {
+  RasterSummary summary;
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const double range = summary.valid > 0 ? summary.maximum - summary.minimum : 0;
+  const Budget budget = resolve(program, options.budget, summary.valid, range);
+  Fit fit;
+  const Stopwatch watch;
+  Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
+  fit.seconds_triangulation = watch.seconds();
+  fit.terrain = make_terrain(std::move(tin), raster, surface, context);
+  fit.terrain.tolerance = budget.max_error;
+  fit.errors = assess(fit.terrain, raster, budget.max_error, context);
+  return fit;
+}
+
+Fit fit_points(const Program& program, const Options& options, const SurfaceOptions& surface, const Context& context) {
+  const PointCloud cloud = load_points(program, options.input, options.points, context);
+  Fit fit;
+  const Stopwatch watch;
+  ScatteredNotes notes;
+  Tin tin;
+  double tolerance = 0;
+  if (options.budget.given()) {
+    const PointSummary summary = summarize(cloud);
+    const Budget budget =
+        resolve(program, options.budget, cloud.positions.size(), summary.maximum.z - summary.minimum.z);
+    tolerance = budget.max_error;
+    tin = refine_points(cloud.positions, {budget.max_error, budget.vertices}, &notes, context);
+  } else {
+    program.say("every point becomes a vertex (--max-error, --vertices or --ratio keep fewer)");
+    tin = triangulate_points(cloud.positions, &notes, context);
+  }
+  fit.seconds_triangulation = watch.seconds();
+  if (notes.repeated > 0)
+    program.say(fmt::format("{} points repeat another's x, y: the mean height is taken (largest difference {:.6g})",
+                            notes.repeated, notes.largest_spread));
+  fit.terrain = make_terrain(std::move(tin), cloud.georef, surface, context);
+  fit.terrain.tolerance = tolerance;
+  fit.errors = assess_points(fit.terrain, cloud.positions, tolerance, context);
+  fit.has_slope = false;
+  return fit;
+}
+
+bool takes_points(const Options& options) {
+  if (is_point_file(options.input) || !options.points.height_field.empty() || !options.points.layer.empty())
+    return true;
+  std::string ending = std::filesystem::path(options.input).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  static const std::vector<std::string> vectors{".shp", ".geojson", ".json", ".fgb", ".gml", ".kml", ".gpkg"};
+  return std::find(vectors.begin(), vectors.end(), ending) != vectors.end();
+}
+
+std::string report_text(const ModelReport& report, const nlohmann::ordered_json& json) {
+  const ErrorReport& e = report.errors;
+  std::vector<std::pair<std::string, std::string>> lines{
+      {"surface", kind_text(report)},
+      {"vertices", fmt::format("{}", report.vertices)},
+      {"triangles", fmt::format("{}", report.triangles)},
+      {"coefficients", fmt::format("{}", report.coefficients)},
+      {"numbers", fmt::format("{}", report.numbers)},
+      {"bytes", fmt::format("{}", report.bytes)},
+      {"RMSE", number_text(e.rmse)},
+      {"largest error", fmt::format("{:.6g} at {:.10g}, {:.10g}", e.max_error, e.max_error_at.x, e.max_error_at.y)}};
+  if (report.has_slope) lines.emplace_back("slope RMSE", number_text(e.slope_rmse));
+  lines.emplace_back(report.has_slope ? "valid cells" : "places", fmt::format("{} of {}", e.valid_cells, e.cells));
+  if (report.tolerance > 0)
+    lines.emplace_back("over tolerance", fmt::format("{} (tolerance {:.6g})", e.violations, report.tolerance));
+  lines.emplace_back("seconds", fmt::format("{:.2f} (triangulation {:.2f})", json.at("seconds").get<double>(),
+                                            json.at("seconds_triangulation").get<double>()));
+  return list_text(lines);
+}
+
+void run(const Program& program, const Options& options) {
+  const Stopwatch watch;
+  const SurfaceOptions surface = resolve(options.surface);
+  check_output(program, options.output, {".retalho"}, {options.input});
+  const Context context = program.context();
+  const Fit fit = takes_points(options) ? fit_points(program, options, surface, context)
+                                        : fit_grid(program, options, surface, context);
+  context.check();
+  save_model(fit.terrain, options.output, program.overwrite);
+  ModelReport report = facts_of(fit.terrain);
+  report.bytes = std::filesystem::file_size(options.output);
+  report.errors = fit.errors;
+  report.has_slope = fit.has_slope;
+  say_violations(program, report);
+  nlohmann::ordered_json json = to_json(report);
+  json["seconds"] = watch.seconds();
+  json["seconds_triangulation"] = fit.seconds_triangulation;
+  if (program.json)
+    program.print(json);
+  else
+    program.print(report_text(report, json));
+}
+
+}  // namespace
+
+void add_fit(CLI::App& root, Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(root, program, "fit", "An elevation grid or survey points to a terrain model, with its error report",
+                  "retalho fit dem.tif -o dem.retalho --max-error 2\n"
+                  "retalho fit dem.tif -o flat.retalho --surface linear --ratio 1%\n"
+                  "retalho fit soundings.xyz -o seabed.retalho --surface powell-sabin\n"
+                  "retalho fit survey.gpkg --height-field elevation -o site.retalho --max-error 0.1");
+  command->add_option("DEM", options->input, "Elevation grid, or points (.xyz .csv .ply, vector layers)")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", options->output, "The model, ending in .retalho")->required()->type_name("FILE");
+  add_budget_flags(*command, options->budget);
+  add_surface_flags(*command, options->surface);
+  add_grid_flags(*command, options->grid);
+  command
+      ->add_option("--height-field", options->points.height_field, "Vector layers: the attribute that holds the height")
+      ->type_name("NAME");
+  command->add_option("--layer", options->points.layer, "Vector files: which layer")->type_name("NAME");
+  command->add_option("--crs", options->points.crs, "Points in formats without a CRS: theirs")->type_name("CRS");
+  command->callback([options, &program] { run(program, *options); });
+}
+
+}  // namespace retalho::app

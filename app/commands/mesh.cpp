@@ -1,0 +1,74 @@
+// retalho mesh: a model as triangles that other tools open.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "inputs.h"
+#include "retalho/core/error.h"
+#include "retalho/mesh/terrain_mesh.h"
+#include "table.h"
+
+namespace retalho::app {
+namespace {
+
+struct Options {
+  std::string model, output;
+  double tolerance = 0;
+};
+
+/// As mesh_terrain's own: a thousandth of the height range.
+double default_tolerance(const Terrain& terrain) {
+  if (terrain.tin.heights.empty()) return 0;
+  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
+  return (*high - *low) / 1000;
+}
+
+void run(const Program& program, const Options& options) {
+  if (!std::isfinite(options.tolerance) || options.tolerance < 0)
+    throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
+  check_output(program, options.output, {".ply", ".obj", ".stl", ".glb"}, {options.model});
+  const Context context = program.context();
+  const Terrain terrain = load_terrain(options.model);
+  const double tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance(terrain);
+  if (options.tolerance <= 0)
+    program.say(
+        fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)", tolerance));
+  const TriangleMesh mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
+  context.check();
+  const MeshCheck check = check_mesh(mesh);
+  write_mesh(mesh, options.output, program.overwrite);
+  const nlohmann::ordered_json json = {{"vertices", mesh.positions.size()},
+                                       {"triangles", mesh.triangles.size()},
+                                       {"tolerance", tolerance},
+                                       {"watertight", check.watertight()},
+                                       {"boundary_edges", check.boundary_edges},
+                                       {"components", check.components},
+                                       {"bytes", std::filesystem::file_size(options.output)}};
+  if (program.json) return program.print(json);
+  program.print(list_text({{"vertices", json["vertices"].dump()},
+                           {"triangles", json["triangles"].dump()},
+                           {"tolerance", number_text(tolerance)},
+                           {"watertight", check.watertight() ? "yes" : "no"},
+                           {"components", json["components"].dump()},
+                           {"bytes", json["bytes"].dump()}}));
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& root, Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(root, program, "mesh", "A model as triangles, to a tolerance",
+                                  "retalho mesh dem.retalho -o dem.glb\n"
+                                  "retalho mesh dem.retalho -o dem.ply --tolerance 0.1");
+  command->add_option("MODEL", options->model, "A .retalho file")->required()->type_name("");
+  command->add_option("-o,--output", options->output, "The mesh: .ply, .obj, .stl or .glb")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--tolerance", options->tolerance, "Largest vertical distance to the surface, height units")
+      ->type_name("T");
+  command->callback([options, &program] { run(program, *options); });
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,137 @@
+#include "fitting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "inputs.h"
+#include "retalho/core/error.h"
+
+namespace retalho::app {
+namespace {
+
+constexpr double kDefaultShare = 0.01;  // of the height range, when no budget is given
+constexpr std::size_t kLeastVertices = 3;
+
+// In the order of the enumerations.
+const std::vector<std::string> kSurfaces{"linear", "powell-sabin", "clough-tocher"};
+const std::vector<std::string> kGradients{"normals", "quadratic", "network"};
+const std::vector<std::string> kCrossDerivatives{"perpendicular", "cubic"};
+
+}  // namespace
+
+void add_budget_flags(CLI::App& command, BudgetFlags& flags) {
+  command
+      .add_option("--max-error", flags.max_error,
+                  "Largest error of the flat triangulation, in height units (0: every cell)")
+      ->type_name("E");
+  command.add_option("--vertices", flags.vertices, "How many vertices; with --max-error: whichever comes first")
+      ->type_name("N");
+  command.add_option("--ratio", flags.ratio, "Vertices as a share of the valid cells: 1% or 0.01")->type_name("R");
+}
+
+Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t valid_cells, double height_range) {
+  Budget budget;
+  if (flags.vertices && !flags.ratio.empty())
+    throw UsageError("--vertices and --ratio say the same in two ways: give one of them", {}, "--ratio");
+  if (flags.max_error) {
+    if (!std::isfinite(*flags.max_error) || *flags.max_error < 0)
+      throw UsageError(fmt::format("--max-error must be 0 or more, not {}", *flags.max_error), {}, "--max-error");
+    budget.max_error = *flags.max_error;
+    budget.tolerance = true;
+  }
+  if (flags.vertices) {
+    if (*flags.vertices < kLeastVertices)
+      throw UsageError(fmt::format("--vertices must be {} or more, not {}", kLeastVertices, *flags.vertices), {},
+                       "--vertices");
+    budget.vertices = *flags.vertices;
+  }
+  if (!flags.ratio.empty()) {
+    const double wanted = parse_ratio("--ratio", flags.ratio) * static_cast<double>(valid_cells);
+    budget.vertices = std::max(kLeastVertices, static_cast<std::size_t>(std::llround(wanted)));
+  }
+  if (!flags.given()) {
+    budget.max_error = kDefaultShare * height_range;
+    budget.tolerance = true;
+    program.say(
+        fmt::format("--max-error {:.6g}: 1 % of the height range (chosen, as none was given)", budget.max_error));
+  }
+  return budget;
+}
+
+void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
+  command.add_option("--surface", flags.surface, "linear, powell-sabin or clough-tocher (default)")->type_name("KIND");
+  command.add_option("--gradients", flags.gradients, "At vertices: normals, quadratic (default) or network")
+      ->type_name("KIND");
+  command
+      .add_option("--cross-derivative", flags.cross_derivative,
+                  "Clough-Tocher, across edges: perpendicular (default) or cubic")
+      ->type_name("KIND");
+}
+
+SurfaceOptions resolve(const SurfaceFlags& flags) {
+  SurfaceOptions options;
+  options.surface = static_cast<SurfaceKind>(choose("--surface", flags.surface, kSurfaces) + 1);
+  options.gradients = static_cast<GradientKind>(choose("--gradients", flags.gradients, kGradients) + 1);
+  options.cross_derivative =
+      static_cast<CrossDerivative>(choose("--cross-derivative", flags.cross_derivative, kCrossDerivatives));
+  return options;
+}
+
+ModelReport facts_of(const Terrain& terrain) {
+  ModelReport report;
+  report.surface = surface_name(terrain.kind);
+  report.gradients = gradient_name(terrain.gradient_kind);
+  if (terrain.kind == SurfaceKind::clough_tocher)
+    report.cross_derivative = kCrossDerivatives[static_cast<std::size_t>(terrain.cross_derivative)];
+  report.vertices = terrain.tin.vertex_count();
+  report.triangles = terrain.tin.triangle_count();
+  report.coefficients = coefficient_count(terrain);
+  report.numbers = number_count(terrain);
+  report.tolerance = terrain.tolerance;
+  return report;
+}
+
+std::string kind_text(const ModelReport& report) {
+  if (report.surface == kSurfaces[0]) return report.surface;
+  const bool cubic = report.cross_derivative == kCrossDerivatives[1];
+  return report.surface + (cubic ? " cubic " : " ") + report.gradients;
+}
+
+nlohmann::ordered_json to_json(const ModelReport& report) {
+  nlohmann::ordered_json json = {{"surface", report.surface}, {"gradients", report.gradients}};
+  if (!report.cross_derivative.empty()) json["cross_derivative"] = report.cross_derivative;
+  const ErrorReport& e = report.errors;
+  json["vertices"] = report.vertices;
+  json["triangles"] = report.triangles;
+  json["coefficients"] = report.coefficients;
+  json["numbers"] = report.numbers;
+  json["bytes"] = report.bytes;
+  json["rmse"] = e.rmse;
+  json["max_error"] = e.max_error;
+  json["max_error_at"] = {e.max_error_at.x, e.max_error_at.y};
+  json["slope_rmse"] = report.has_slope ? nlohmann::ordered_json(e.slope_rmse) : nlohmann::ordered_json(nullptr);
+  json["cells"] = e.cells;
+  json["valid_cells"] = e.valid_cells;
+  json["uncovered"] = e.uncovered;
+  json["violations"] = e.violations;
+  return json;
+}
+
+void say_violations(const Program& program, const ModelReport& report) {
+  const ErrorReport& e = report.errors;
+  if (e.uncovered > 0)
+    program.say(fmt::format("warning: the model has no data at {} of {} valid cells", e.uncovered, e.valid_cells));
+  if (e.violations == 0) return;
+  if (report.surface == kSurfaces[0])
+    program.say(fmt::format("warning: {} of {} valid cells are over the tolerance {:.6g} (largest error {:.6g})",
+                            e.violations, e.valid_cells, report.tolerance, e.max_error));
+  else
+    program.say(
+        fmt::format("the tolerance {:.6g} holds for the flat triangulation; this smooth surface over it passes "
+                    "the tolerance at {} of {} valid cells (largest error {:.6g})",
+                    report.tolerance, e.violations, e.valid_cells, e.max_error));
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,62 @@
+// What `fit` and `compare` share: the options for budgets and surfaces, and one model's report as JSON and as words.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "program.h"
+#include "retalho/raster/raster.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/terrain/report.h"
+
+namespace retalho::app {
+
+/// How fine a triangulation is asked for.
+struct BudgetFlags {
+  std::optional<double> max_error;
+  std::optional<std::size_t> vertices;
+  std::string ratio;
+
+  bool given() const { return max_error || vertices || !ratio.empty(); }
+};
+void add_budget_flags(CLI::App& command, BudgetFlags& flags);
+
+struct Budget {
+  double max_error = 0;      ///< 0 with vertices == 0: every cell
+  std::size_t vertices = 0;  ///< 0: no budget
+  bool tolerance = false;    ///< whether max_error was asked for (or chosen) and is to be judged
+};
+/// Throws UsageError for contradictions and values out of range. Nothing given: 1 % of the height range, said.
+Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t valid_cells, double height_range);
+
+/// Which surface, as words.
+struct SurfaceFlags {
+  std::string surface = "clough-tocher", gradients = "quadratic", cross_derivative = "perpendicular";
+};
+void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
+/// Throws UsageError with the choices.
+SurfaceOptions resolve(const SurfaceFlags& flags);
+
+/// One model with what is known of it.
+struct ModelReport {
+  std::string name;  ///< file, or kind
+  std::string surface, gradients, cross_derivative;
+  std::size_t vertices = 0, triangles = 0, coefficients = 0, numbers = 0, bytes = 0;
+  double tolerance = 0;
+  ErrorReport errors;
+  bool has_slope = true;
+};
+/// Everything but name, bytes and errors.
+ModelReport facts_of(const Terrain& terrain);
+
+/// "clough-tocher quadratic", "clough-tocher cubic quadratic", "linear".
+std::string kind_text(const ModelReport& report);
+
+/// The keys of docs/cli.md, in its order.
+nlohmann::ordered_json to_json(const ModelReport& report);
+
+/// Says on standard error what the report's `violations` and `uncovered` mean, if there are any.
+void say_violations(const Program& program, const ModelReport& report);
+
+}  // namespace retalho::app
