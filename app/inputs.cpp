@@ -34,7 +34,7 @@ Raster load_grid(const Program& program, const std::string& path, const GridFlag
   const Stopwatch watch;
   Raster raster = read_raster(path, {flags.band, flags.nodata}, &notes, context);
   summary = summarize(raster);
-  program.say(describe(path, raster, summary, notes));
+  program.say(fmt::format("{}: {}", path, retalho::describe(raster, notes, summary)));
   for (const std::string& remark : notes.remarks) program.say("  " + remark);
   program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
   return raster;
@@ -63,17 +63,6 @@ std::string crs_name(const std::string& wkt) {
   const std::size_t open = wkt.find('"');
   const std::size_t close = open == std::string::npos ? open : wkt.find('"', open + 1);
   return close == std::string::npos ? std::string() : wkt.substr(open + 1, close - open - 1);
-}
-
-std::string describe(const std::string& path, const Raster& raster, const RasterSummary& summary,
-                     const ReadNotes& notes) {
-  std::string line = fmt::format("{}: {} x {} cells of {:.6g} x {:.6g} {}", path, raster.columns, raster.rows,
-                                 raster.cell_width, raster.cell_height, raster.georef.unit);
-  line += notes.crs_name.empty() ? ", no CRS" : ", " + notes.crs_name;
-  line += fmt::format(", {} valid", summary.valid);
-  if (summary.valid > 0) line += fmt::format(", heights {:.8g} to {:.8g}", summary.minimum, summary.maximum);
-  if (!raster.height_unit.empty()) line += " " + raster.height_unit;
-  return line;
 }
 
 void check_same_crs(const Georef& a, const std::string& a_file, const Georef& b, const std::string& b_file) {

@@ -29,10 +29,6 @@ PointCloud load_points(const Program& program, const std::string& path, const Po
 /// A terrain model. Throws BadInput when the model holds another kind of surface.
 Terrain load_terrain(const std::string& path);
 
-/// "N41E001.hgt: 1201 x 1201 cells of 69.2 x 92.7 metre, EPSG:4326 WGS 84, 1441881 valid, heights -20 to 1204".
-std::string describe(const std::string& path, const Raster& raster, const RasterSummary& summary,
-                     const ReadNotes& notes);
-
 /// The name of a CRS, out of its WKT; empty when there is none.
 std::string crs_name(const std::string& wkt);
 

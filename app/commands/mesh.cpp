@@ -1,7 +1,6 @@
 // retalho mesh: a model as triangles that other tools open.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -18,20 +17,13 @@ struct Options {
   double tolerance = 0;
 };
 
-/// As mesh_terrain's own: a thousandth of the height range.
-double default_tolerance(const Terrain& terrain) {
-  if (terrain.tin.heights.empty()) return 0;
-  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
-  return (*high - *low) / 1000;
-}
-
 void run(const Program& program, const Options& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
   check_output(program, options.output, {".ply", ".obj", ".stl", ".glb"}, {options.model});
   const Context context = program.context();
   const Terrain terrain = load_terrain(options.model);
-  const double tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance(terrain);
+  const double tolerance = mesh_tolerance(terrain, {.tolerance = options.tolerance});
   if (options.tolerance <= 0)
     program.say(
         fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)", tolerance));
