@@ -38,8 +38,8 @@ struct ViewshedOptions {
          azimuth_to = 360;            ///< horizontal field, degrees clockwise from north; may pass through north
   double lowest = -90, highest = 90;  ///< vertical field: elevation angle of the target seen from the eye, degrees
   bool earth_curvature = false;       ///< heights are lowered by (1 - refraction) d^2 / (2 R), R = 6,371,008.8 m; needs
-                                 ///< heights and distances in metres
-  double refraction = 0.13;  ///< 0.13 light, 0.25 radio; used with earth_curvature
+                                      ///< heights and distances in metres
+  double refraction = 0.13;           ///< 0.13 light, 0.25 radio; used with earth_curvature
   VoidRule voids = VoidRule::transparent;
 };
 
