@@ -129,7 +129,6 @@ class Refinement {
     const double rounding = largest * 0x1p-48;
     field_.tolerance = exact_ ? asked : std::max(asked - std::max(asked * 0x1p-40, rounding), rounding);
     field_.enough = field_.tolerance;
-    side_tolerance_ = exact_ ? asked : asked * (1 - 0x1p-40);
     const float base =
         std::max(static_cast<float>(field_.tolerance), static_cast<float>(std::max(largest, 1e-30) * 0x1p-60));
     first_bucket_ = static_cast<int>(std::bit_cast<std::uint32_t>(base) >> 18);
@@ -150,7 +149,7 @@ class Refinement {
         const Record& t = mesh_[id];
         const Cell a = t.corner[k], b = t.corner[k == 2 ? 0 : k + 1];
         if (t.link[k] != kNone || !on_side(a, b, raster_.columns, raster_.rows)) continue;
-        const Cell worst = worst_on_side(raster_, a, b, side_tolerance_);
+        const Cell worst = worst_on_side(raster_, a, b, options_.max_error);
         if (worst == a) continue;
         insert(id, worst, worker->cavity);
         pending.insert(pending.end(), worker->cavity.made, worker->cavity.made + worker->cavity.made_size);
@@ -469,7 +468,6 @@ class Refinement {
   Mesh mesh_;
   std::vector<double> reciprocals_;
   ScanField<Height> field_;
-  double side_tolerance_ = 0;
   bool exact_ = false;
   int first_bucket_ = 0;
   std::size_t vertices_ = 0;
