@@ -11,6 +11,7 @@
 
 #include "retalho/raster/io.h"
 #include "retalho/tin/greedy_heap.h"
+#include "retalho/tin/greedy_scan.h"
 #include "support/support.h"
 
 namespace retalho {
@@ -95,6 +96,37 @@ TEST(GreedyTiles, SameBytesFromAnyNumberOfThreads) {
       EXPECT_EQ(first.neighbors, again.neighbors) << threads;
     }
   }
+}
+
+TEST(GreedyTiles, LanesAndScalarsFindTheSameCell) {
+  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this machine has no AVX2";
+  std::mt19937 rng(3);
+  const auto pick = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(rng); };
+  std::vector<double> reciprocals(401, 0);
+  for (std::size_t i = 1; i < reciprocals.size(); ++i) reciprocals[i] = 1 / static_cast<double>(i);
+  std::size_t found = 0;
+  for (int round = 0; round < 3000; ++round) {
+    // Few different heights: ties everywhere.
+    const Raster r = make<float>(60, 50, [&](int, int) { return pick(0, 19) == 0 ? kVoid : pick(0, 3); });
+    const auto& z = std::get<std::vector<float>>(r.heights);
+    greedy::Record a{};
+    for (auto& c : a.corner) c = greedy::cell_at(pick(0, 59), pick(0, 49));
+    for (auto& link : a.link) link = pick(0, 1) == 0 ? kNone : 4;
+    if (greedy::area2(a.corner[0], a.corner[1], a.corner[2]) < 0) std::swap(a.corner[1], a.corner[2]);
+    if (greedy::area2(a.corner[0], a.corner[1], a.corner[2]) == 0) continue;
+    bool valid = true;
+    for (const auto c : a.corner) valid = valid && r.valid(greedy::column_of(c), greedy::row_of(c));
+    if (!valid) continue;
+    greedy::Record b = a;
+    const greedy::ScanField<float> field{z.data(),          60, 50, 0, 59, 0, 49, 0.5, 0.5, round % 2 == 0 ? 0 : 6,
+                                         reciprocals.data()};
+    greedy::scan_generic(field, a);
+    greedy::scan_avx2(field, b);
+    ASSERT_EQ(a.error, b.error);
+    ASSERT_EQ(a.candidate, b.candidate);
+    found += a.error > 0 ? 1U : 0U;
+  }
+  EXPECT_GT(found, 1000U);
 }
 
 TEST(GreedyTiles, HonoursTheToleranceOnEveryCellTiesIncluded) {

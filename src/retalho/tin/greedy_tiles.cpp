@@ -88,12 +88,11 @@ class Refinement {
       insert_worst_first(budget > 0 ? std::min(budget, vertices_ + kExactInsertions) : vertices_ + kExactInsertions);
     else
       start(budget);
-    const double ratio = budget > 0 ? std::sqrt(0.5) : 0.5;
     for (;;) {
       const double largest = largest_error();
-      // The last stretch to a budget is made in exact order; a level from two fifths of it may not overshoot.
-      if (largest <= 0 || (budget > 0 && vertices_ * 5 / 2 > budget)) break;
-      const double threshold = largest * ratio;
+      // The last stretch to a budget is made in exact order; near it the levels are narrow, so as not to overshoot.
+      if (largest <= 0 || (budget > 0 && vertices_ * 8 / 5 > budget)) break;
+      const double threshold = largest * (budget > 0 && vertices_ * 6 > budget ? 0.84 : 0.5);
       if (budget > 0) field_.enough = threshold;
       refine_level(threshold > field_.tolerance ? threshold : 0);
       context_.report("triangulation", budget > 0 ? static_cast<double>(vertices_) / static_cast<double>(budget)
@@ -186,7 +185,7 @@ class Refinement {
   }
 
   void scan_all() {
-    each_chunk([&](std::size_t, std::uint32_t id) { scan(field_, mesh_[id]); });
+    each_chunk([&](std::size_t, std::uint32_t id) { scan_(field_, mesh_[id]); });
   }
 
   double largest_error() const {
@@ -221,7 +220,7 @@ class Refinement {
       if (vertices_ % 1024 == 0) context_.check();
       insert(e.id, e.cell, worker->cavity);
       for (int i = 0; i < worker->cavity.made_size; ++i) {
-        scan(field_, mesh_[worker->cavity.made[i]]);
+        scan_(field_, mesh_[worker->cavity.made[i]]);
         push(worker->cavity.made[i]);
       }
     }
@@ -246,7 +245,7 @@ class Refinement {
     };
     const auto scan_dirty = [&] {
       parallel_chunks(dirty.size(), 4, context_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) scan(field_, mesh_[dirty[i]]);
+        for (std::size_t i = begin; i < end; ++i) scan_(field_, mesh_[dirty[i]]);
       });
     };
     each(sort_in);
@@ -383,7 +382,7 @@ class Refinement {
       ++inserted;
       for (int i = 0; i < cavity.made_size; ++i) {
         const std::uint32_t made = cavity.made[i];
-        scan(field_, mesh_[made]);
+        scan_(field_, mesh_[made]);
         if (!once)
           push(made);
         else if (mesh_[made].error > 0 && mesh_[made].error >= least)
@@ -468,6 +467,7 @@ class Refinement {
   Mesh mesh_;
   std::vector<double> reciprocals_;
   ScanField<Height> field_;
+  Scan<Height> scan_ = choose_scan<Height>();
   bool exact_ = false;
   int first_bucket_ = 0;
   std::size_t vertices_ = 0;
