@@ -1,0 +1,88 @@
+// The scripts that judge: the counter of scripts/test and the table of scripts/targets.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <string>
+
+#include "support/support.h"
+
+namespace retalho {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string last_line;
+};
+
+Outcome run_script(const std::string& arguments) {
+  Outcome run;
+  std::FILE* pipe = ::popen((std::string(RETALHO_SOURCE_DIR) + "/scripts/" + arguments + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return run;
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  const int status = ::pclose(pipe);
+  run.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  run.last_line = text.substr(text.rfind('\n') + 1);
+  return run;
+}
+
+class CountTests : public testing::Test {
+ protected:
+  Outcome count(const std::string& words = "") {
+    return run_script("count_tests.py '" + folder_.path().string() + "' " + words);
+  }
+  void ctest(const std::string& cases) { folder_.put("ctest.xml", "<testsuite>" + cases + "</testsuite>"); }
+  void report(const std::string& name, const std::string& cases) {
+    folder_.put("test_" + name + ".xml", "<testsuites><testsuite name=\"S\">" + cases + "</testsuite></testsuites>");
+  }
+  test::ScratchFolder folder_;
+};
+
+const std::string kPassed = R"(<testcase name="a" classname="S" status="run" result="completed"/>)";
+const std::string kFailed = R"(<testcase name="b" classname="S" status="run"><failure message="no"/></testcase>)";
+const std::string kSkipped =
+    R"(<testcase name="c" classname="S" status="run" result="skipped"><skipped message="no data"/></testcase>)";
+
+TEST_F(CountTests, CasesAreCountedNotPrograms) {
+  ctest(R"(<testcase name="tin" status="run"/><testcase name="package" status="run"/>)");
+  report("tin", kPassed + kPassed + kSkipped);
+  const Outcome run = count("demo=passed");
+  EXPECT_EQ(run.last_line, "4 passed, 0 failed, 1 skipped");
+  EXPECT_EQ(run.code, 0);
+}
+
+TEST_F(CountTests, AFailedCaseIsOneFailure) {
+  ctest(R"(<testcase name="tin" status="fail"/>)");
+  report("tin", kPassed + kFailed);
+  const Outcome run = count();
+  EXPECT_EQ(run.last_line, "1 passed, 1 failed");
+  EXPECT_EQ(run.code, 1);
+}
+
+TEST_F(CountTests, ACrashIsAFailureWithOrWithoutAReport) {
+  ctest(R"(<testcase name="tin" status="fail"/><testcase name="mesh" status="fail"/>)");
+  report("tin", kPassed);
+  EXPECT_EQ(count().last_line, "1 passed, 2 failed");
+  folder_.put("test_mesh.xml", "<testsuites><testsuite");
+  EXPECT_EQ(count().last_line, "1 passed, 2 failed");
+  EXPECT_EQ(count().code, 1);
+}
+
+TEST_F(CountTests, AFailedCheckAndNoTestAtAllAreFailures) {
+  EXPECT_EQ(count().last_line, "0 passed, 1 failed");
+  EXPECT_EQ(count().code, 1);
+  ctest(R"(<testcase name="tin" status="run"/>)");
+  report("tin", kPassed);
+  EXPECT_EQ(count("demo=passed lint=failed").last_line, "2 passed, 1 failed");
+  EXPECT_EQ(count("demo=passed lint=failed").code, 1);
+}
+
+TEST(Targets, EveryRowIsComplete) {
+  const Outcome run = run_script("targets --list");
+  EXPECT_EQ(run.code, 0) << run.last_line;
+}
+
+}  // namespace
+}  // namespace retalho
