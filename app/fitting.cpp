@@ -62,7 +62,9 @@ Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t val
 
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
   command.add_option("--surface", flags.surface, "linear, powell-sabin or clough-tocher (default)")->type_name("KIND");
-  command.add_option("--gradients", flags.gradients, "At vertices: normals, quadratic (default) or network")
+  command
+      .add_option("--gradients", flags.gradients,
+                  "At vertices: normals (default for grids), quadratic (default for points) or network")
       ->type_name("KIND");
   command
       .add_option("--cross-derivative", flags.cross_derivative,
@@ -70,10 +72,11 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
       ->type_name("KIND");
 }
 
-SurfaceOptions resolve(const SurfaceFlags& flags) {
+SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {
   SurfaceOptions options;
+  const std::string gradients = !flags.gradients.empty() ? flags.gradients : from_points ? "quadratic" : "normals";
   options.surface = static_cast<SurfaceKind>(choose("--surface", flags.surface, kSurfaces) + 1);
-  options.gradients = static_cast<GradientKind>(choose("--gradients", flags.gradients, kGradients) + 1);
+  options.gradients = static_cast<GradientKind>(choose("--gradients", gradients, kGradients) + 1);
   options.cross_derivative =
       static_cast<CrossDerivative>(choose("--cross-derivative", flags.cross_derivative, kCrossDerivatives));
   return options;

@@ -32,11 +32,15 @@ Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t val
 
 /// Which surface, as words.
 struct SurfaceFlags {
-  std::string surface = "clough-tocher", gradients = "quadratic", cross_derivative = "perpendicular";
+  std::string surface = "clough-tocher";
+  std::string gradients;  ///< empty: normals for grids, quadratic for points
+  std::string cross_derivative = "perpendicular";
 };
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
+/// Gradients that are not asked for: the vertices of a refined grid are its peaks and pits, where fitted gradients
+/// overshoot and the triangles' normals do not; survey points are not chosen so, and there quadratic is far better.
 /// Throws UsageError with the choices.
-SurfaceOptions resolve(const SurfaceFlags& flags);
+SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points);
 
 /// One model with what is known of it.
 struct ModelReport {

@@ -38,7 +38,7 @@ std::vector<ModelReport> compare_kinds(const Program& program, const Options& op
   const Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
   std::vector<ModelReport> reports;
   for (const SurfaceFlags& kind : kinds()) {
-    Terrain terrain = make_terrain(tin, raster, resolve(kind), context);
+    Terrain terrain = make_terrain(tin, raster, resolve(kind, false), context);
     terrain.tolerance = budget.max_error;
     ModelReport report = facts_of(terrain);
     report.name = kind_text(report);

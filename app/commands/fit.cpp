@@ -105,7 +105,7 @@ std::string report_text(const ModelReport& report, const nlohmann::ordered_json&
 
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
-  const SurfaceOptions surface = resolve(options.surface);
+  const SurfaceOptions surface = resolve(options.surface, takes_points(options));
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
   const Fit fit = takes_points(options) ? fit_points(program, options, surface, context)
