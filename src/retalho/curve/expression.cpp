@@ -119,8 +119,10 @@ std::vector<Node> reachable(const std::vector<Node>& all, std::int32_t root) {
   return out;
 }
 
-double apply(Op op, double a, double b) {
-  switch (op) {
+}  // namespace
+
+double Expression::apply(const Node& node, double a, double b) {
+  switch (node.op) {
     case Op::add:
       return a + b;
     case Op::subtract:
@@ -172,14 +174,13 @@ double apply(Op op, double a, double b) {
     case Op::max:
       return std::isnan(a) || std::isnan(b) ? std::nan("") : std::max(a, b);
     case Op::number:
+      return node.number;
     case Op::x:
     case Op::y:
       break;
   }
   return std::nan("");
 }
-
-}  // namespace
 
 Expression Expression::parse(const std::string& text) {
   Tree tree;
@@ -230,7 +231,7 @@ double Expression::operator()(double x, double y) const {
     v[i] = n.op == Op::number ? n.number
            : n.op == Op::x    ? x
            : n.op == Op::y    ? y
-                              : apply(n.op, v[n.a], n.b >= 0 ? v[n.b] : 0);
+                              : apply(n, v[n.a], n.b >= 0 ? v[n.b] : 0);
   }
   return v[nodes_.size() - 1];
 }

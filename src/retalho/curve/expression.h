@@ -16,7 +16,8 @@
 
 namespace retalho {
 
-/// Value and gradient enclosed on a box. `defined`: f exists everywhere on the box; `possible`: somewhere perhaps;
+/// Value and gradient enclosed on a box. `defined`: f exists and is continuous everywhere on the box; `possible`: it
+/// exists somewhere perhaps;
 /// `smooth`: f is continuously differentiable on the box, so that the gradient's enclosure holds.
 struct IntervalJet {
   Interval value, dx, dy;
@@ -68,6 +69,9 @@ class Expression {
   double operator()(double x, double y = 0) const;
   /// Encloses f and its gradient on the box; rounding is outward, libm is trusted to 4 units in the last place.
   IntervalJet enclose(Interval x, Interval y) const;
+
+  /// One node's operation on numbers.
+  static double apply(const Node& node, double a, double b);
 
   bool uses_y() const;
   const std::vector<Node>& nodes() const { return nodes_; }  ///< the last one is the value

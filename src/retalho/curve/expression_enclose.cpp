@@ -100,7 +100,7 @@ IntervalJet exponential(const IntervalJet& a) {
   return chain(a, v, v);
 }
 
-IntervalJet apply(Op op, IntervalJet a) {
+IntervalJet enclose_function(Op op, IntervalJet a) {
   const Interval one{1, 1};
   switch (op) {
     case Op::negate:
@@ -119,7 +119,7 @@ IntervalJet apply(Op op, IntervalJet a) {
     }
     case Op::abs: {
       if (a.value.low >= 0) return a;
-      if (a.value.high <= 0) return apply(Op::negate, a);
+      if (a.value.high <= 0) return enclose_function(Op::negate, a);
       IntervalJet j = chain(a, {0, std::max(-a.value.low, a.value.high)}, {-1, 1});
       j.smooth = false;
       return j;
@@ -138,7 +138,7 @@ IntervalJet apply(Op op, IntervalJet a) {
     case Op::cos:
       return chain(a, cosine(a.value), -sine(a.value));
     case Op::tan: {
-      const IntervalJet s = apply(Op::sin, a), c = apply(Op::cos, a);
+      const IntervalJet s = enclose_function(Op::sin, a), c = enclose_function(Op::cos, a);
       // Inside one branch the tangent rises; across a pole nothing is known.
       if (c.value.contains_zero()) return multiply(s, reciprocal(c));
       const Interval v = rising(a.value, [](double t) { return std::tan(t); });
@@ -148,19 +148,19 @@ IntervalJet apply(Op op, IntervalJet a) {
     case Op::acos: {
       if (!restrict_domain(a, -1, 1)) return undefined_everywhere();
       if (a.value.low == -1 || a.value.high == 1) a.smooth = false;
-      const Interval slope = one / apply(Op::sqrt, {one - square(a.value), {}, {}}).value;
+      const Interval slope = one / enclose_function(Op::sqrt, {one - square(a.value), {}, {}}).value;
       if (op == Op::asin) return chain(a, rising(a.value, [](double t) { return std::asin(t); }), slope);
       return chain(a, widened_function(std::acos(a.value.high), std::acos(a.value.low)), -slope);
     }
     case Op::atan:
       return chain(a, rising(a.value, [](double t) { return std::atan(t); }), one / (one + square(a.value)));
     case Op::sinh: {
-      const Interval magnitude = apply(Op::abs, a).value;
+      const Interval magnitude = enclose_function(Op::abs, a).value;
       return chain(a, rising(a.value, [](double t) { return std::sinh(t); }),
                    rising(magnitude, [](double t) { return std::cosh(t); }));
     }
     case Op::cosh: {
-      const Interval magnitude = apply(Op::abs, a).value;
+      const Interval magnitude = enclose_function(Op::abs, a).value;
       return chain(a, rising(magnitude, [](double t) { return std::cosh(t); }),
                    rising(a.value, [](double t) { return std::sinh(t); }));
     }
@@ -171,13 +171,13 @@ IntervalJet apply(Op op, IntervalJet a) {
     case Op::floor: {
       IntervalJet j{
           {std::floor(a.value.low), std::floor(a.value.high)}, {0, 0}, {0, 0}, a.defined, a.possible, a.smooth};
-      if (j.value.low != j.value.high) j.smooth = false;
+      if (j.value.low != j.value.high) j.smooth = j.defined = false;
       return j;
     }
     case Op::sign: {
       const auto s = [](double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; };
       IntervalJet j{{s(a.value.low), s(a.value.high)}, {0, 0}, {0, 0}, a.defined, a.possible, a.smooth};
-      if (j.value.low != j.value.high) j.smooth = false;
+      if (j.value.low != j.value.high) j.smooth = j.defined = false;
       return j;
     }
     default:
@@ -256,7 +256,7 @@ IntervalJet Expression::enclose(Interval x, Interval y) const {
         v[i] = least(a, b, true);
         break;
       default:
-        v[i] = apply(n.op, a);
+        v[i] = enclose_function(n.op, a);
     }
     // What was undefined somewhere below stays so: operators only add to it.
     v[i].defined = v[i].defined && defined;
