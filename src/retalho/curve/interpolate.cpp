@@ -165,6 +165,8 @@ const char* parameters_name(Parameters parameters) {
       return "centripetal";
     case Parameters::chord:
       return "chord";
+    case Parameters::x:
+      return "x";
   }
   return "";
 }
@@ -237,12 +239,17 @@ Curve spline_graph(std::span<const double> x, std::span<const double> y, const S
 }
 
 std::vector<double> point_parameters(std::span<const Vec3> points, Parameters kind) {
-  std::vector<double> u = {0};
+  std::vector<double> u = {kind == Parameters::x && !points.empty() ? points[0].x : 0.0};
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double d = norm(points[i] - points[i - 1]);
-    if (kind != Parameters::uniform && !(d > 0))
-      throw BadInput("repeats the point before it: merge them, or use uniform parameters", {},
-                     fmt::format("points[{}]", i));
+    const std::string where = fmt::format("points[{}]", i);
+    if (kind == Parameters::x) {
+      if (!(points[i].x > points[i - 1].x))
+        throw BadInput(fmt::format("x = {} after {}: with the parameters \"x\" they must ascend", points[i].x, points[i - 1].x), {}, where);
+      u.push_back(points[i].x);
+      continue;
+    }
+    if (kind != Parameters::uniform && !(d > 0)) throw BadInput("repeats the point before it: merge them, or use uniform parameters", {}, where);
     u.push_back(u.back() + (kind == Parameters::uniform ? 1.0 : kind == Parameters::chord ? d : std::sqrt(d)));
   }
   return u;
@@ -290,7 +297,9 @@ Curve lagrange_curve(std::span<const Vec3> points, int dimension, Parameters par
   if (dimension == 3) run(&Vec3::z);
   Curve curve;
   curve.dimension = dimension;
-  curve.append(control, u.back());
+  curve.breaks = {u.front()};
+  curve.append(control, u.back() - u.front());
+  curve.breaks.back() = u.back();
   return curve;
 }
 

@@ -46,10 +46,11 @@ std::vector<double> spline_slopes(std::span<const double> x, std::span<const dou
 /// y = s(x) as a plane curve, x the parameter.
 Curve spline_graph(std::span<const double> x, std::span<const double> y, const SplineOptions& options = {});
 
-/// How the parameters of points are chosen: |P_i+1 - P_i| to the power 0, 1/2 or 1.
-enum class Parameters { uniform, centripetal, chord };
+/// How the parameters of points are chosen: |P_i+1 - P_i| to the power 0, 1/2 or 1, or the points' own x (a graph y(x)).
+enum class Parameters { uniform, centripetal, chord, x };
 const char* parameters_name(Parameters parameters);
-/// Starts at 0. Throws BadInput naming the first point that repeats the one before (not for uniform).
+/// Starts at 0 (at the first x for Parameters::x). Throws BadInput naming the first point that repeats the one before
+/// (not for uniform), or whose x does not ascend.
 std::vector<double> point_parameters(std::span<const Vec3> points, Parameters kind);
 
 struct PointSplineOptions {

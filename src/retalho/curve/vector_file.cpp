@@ -1,0 +1,146 @@
+#include "retalho/curve/vector_file.h"
+
+#include <cpl_error.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+
+#include "retalho/core/atomic_file.h"
+#include "retalho/core/error.h"
+
+namespace retalho {
+
+namespace {
+
+using Dataset = std::unique_ptr<GDALDataset, void (*)(GDALDataset*)>;
+
+void register_drivers() {
+  static std::once_flag once;
+  std::call_once(once, [] { GDALAllRegister(); });
+}
+
+void add_line(const OGRLineString& line, bool ring, const std::string& name, std::vector<VectorLine>& out) {
+  if (line.getNumPoints() < 2) return;
+  VectorLine v{name, {}, line.Is3D() ? 3 : 2, ring || line.get_IsClosed() != 0};
+  for (int i = 0; i < line.getNumPoints(); ++i) v.points.push_back({line.getX(i), line.getY(i), line.Is3D() ? line.getZ(i) : 0});
+  if (v.closed && v.points.size() > 2 && v.points.front() == v.points.back()) v.points.pop_back();
+  out.push_back(std::move(v));
+}
+
+void add_geometry(const OGRGeometry* geometry, const std::string& name, std::vector<VectorLine>& out) {
+  if (!geometry) return;
+  std::unique_ptr<OGRGeometry> linear;
+  if (geometry->hasCurveGeometry()) {
+    linear.reset(geometry->getLinearGeometry());
+    geometry = linear.get();
+  }
+  switch (wkbFlatten(geometry->getGeometryType())) {
+    case wkbLineString: add_line(*geometry->toLineString(), false, name, out); break;
+    case wkbPolygon:
+      for (const auto* ring : *geometry->toPolygon()) add_line(*ring, true, name, out);
+      break;
+    case wkbMultiLineString:
+    case wkbMultiPolygon:
+    case wkbGeometryCollection:
+      for (const auto* part : *geometry->toGeometryCollection()) add_geometry(part, name, out);
+      break;
+    default: break;
+  }
+}
+
+struct Format {
+  const char* ending;
+  const char* driver;
+};
+constexpr Format kFormats[] = {{".gpkg", "GPKG"}, {".geojson", "GeoJSON"}, {".shp", "ESRI Shapefile"}, {".dxf", "DXF"}};
+
+std::string gdal_message() {
+  const std::string message = CPLGetLastErrorMsg();
+  return message.empty() ? "GDAL gives no reason" : message;
+}
+
+void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const std::string& file, const std::string& path, bool geojson, bool attributes) {
+  const Dataset data(driver.Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr), [](GDALDataset* d) { GDALClose(d); });
+  if (!data) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+  bool space = false;
+  for (const VectorLine& l : lines) space = space || l.dimension == 3;
+  char** layer_options = nullptr;
+  if (geojson) layer_options = CSLSetNameValue(layer_options, "COORDINATE_PRECISION", "17");
+  OGRLayer* layer = data->CreateLayer("curves", nullptr, space ? wkbLineString25D : wkbLineString, layer_options);
+  CSLDestroy(layer_options);
+  if (!layer) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+  OGRFieldDefn field("name", OFTString);
+  if (attributes && layer->CreateField(&field) != OGRERR_NONE) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+  for (const VectorLine& l : lines) {
+    const std::unique_ptr<OGRFeature> feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+    OGRLineString line;
+    const auto add = [&](Vec3 p) { space ? line.addPoint(p.x, p.y, p.z) : line.addPoint(p.x, p.y); };
+    for (const Vec3& p : l.points) add(p);
+    if (l.closed && !(l.points.front() == l.points.back())) add(l.points.front());
+    if (attributes) feature->SetField("name", l.name.c_str());
+    feature->SetGeometry(&line);
+    if (layer->CreateFeature(feature.get()) != OGRERR_NONE) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+  }
+}
+
+}  // namespace
+
+std::vector<VectorLine> read_vector_lines(const std::string& path) {
+  register_drivers();
+  CPLErrorReset();
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const Dataset data(static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr)),
+                     [](GDALDataset* d) { if (d) GDALClose(d); });
+  const std::string trouble = CPLGetLastErrorMsg();
+  CPLPopErrorHandler();
+  if (!data) {
+    if (!std::filesystem::exists(path)) throw CannotRead("no such file", path);
+    throw CannotRead(trouble.empty() ? "no vector format that GDAL knows" : trouble, path);
+  }
+  std::vector<VectorLine> out;
+  for (OGRLayer* layer : data->GetLayers())
+    for (const auto& feature : *layer) {
+      const int field = feature->GetFieldIndex("name");
+      add_geometry(feature->GetGeometryRef(), field >= 0 ? feature->GetFieldAsString(field) : "", out);
+    }
+  if (out.empty()) throw BadInput("no line or polygon in any layer", path);
+  return out;
+}
+
+void write_vector_lines(const std::vector<VectorLine>& lines, const std::string& path, bool overwrite) {
+  register_drivers();
+  const Format* format = nullptr;
+  for (const Format& f : kFormats)
+    if (path.ends_with(f.ending)) format = &f;
+  if (!format) throw UsageError("a vector file's name must end in .gpkg, .geojson, .shp or .dxf", path);
+  if (lines.empty()) throw UsageError("there is no line to write", path);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format->driver);
+  if (!driver) throw CannotWrite(fmt::format("this GDAL has no driver {}", format->driver), path);
+  AtomicFile file(path, overwrite);
+  CPLErrorReset();
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+  struct Pop { ~Pop() { CPLPopErrorHandler(); } } pop;
+  const std::string kind = format->driver;
+  std::filesystem::remove(file.temporary());  // the driver makes the file itself
+  write_lines(*driver, lines, file.temporary(), path, kind == "GeoJSON", kind != "DXF");
+  if (CPLGetLastErrorType() >= CE_Failure) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+  if (kind == "ESRI Shapefile") {
+    // A shapefile is several files: the companions follow under the final name.
+    const std::filesystem::path from(file.temporary()), to(path);
+    for (const char* ending : {".shx", ".dbf", ".prj", ".cpg"}) {
+      auto source = from, target = to;
+      source.replace_extension(ending);
+      target.replace_extension(ending);
+      std::error_code code;
+      if (std::filesystem::exists(source)) std::filesystem::rename(source, target, code);
+      if (code) throw CannotWrite(fmt::format("cannot write {}: {}", target.string(), code.message()), path);
+    }
+  }
+  file.commit();
+}
+
+}  // namespace retalho
