@@ -14,24 +14,39 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json point_json(Vec3 p, int dimension) { return dimension == 3 ? Json{p.x, p.y, p.z} : Json{p.x, p.y}; }
+Json point_json(Vec3 p, int dimension) {
+  return dimension == 3 ? Json{p.x, p.y, p.z} : Json{p.x, p.y};
+}
 
 /// "C1": as the sheet speaks; a gap is "none".
-std::string level_name(char sort, int level) { return level < 0 ? "none" : fmt::format("{}{}", sort, level); }
+std::string level_name(char sort, int level) {
+  return level < 0 ? "none" : fmt::format("{}{}", sort, level);
+}
 
 Json joins_json(const Curve& curve) {
   Json list = Json::array();
   for (const Join& j : analyse_joins(curve))
-    list.push_back({{"at", j.at}, {"point", point_json(j.point, curve.dimension)}, {"inside", j.left == j.right && curve.segment_count() > 1 ? true : j.left == j.right && !curve.closed},
-                    {"C", level_name('C', j.c)}, {"G", level_name('G', j.g)}, {"gap", j.gap}, {"angle", j.angle * 180 / std::numbers::pi}, {"angle_unit", "degree"},
-                    {"curvature_left", j.curvature_left}, {"curvature_right", j.curvature_right}, {"curvature_gap", j.curvature_gap}, {"speed_ratio", j.speed_ratio},
-                    {"kind", join_kind_name(j.kind)}});
+    list.push_back(
+        {{"at", j.at},
+         {"point", point_json(j.point, curve.dimension)},
+         {"inside", j.left == j.right && curve.segment_count() > 1 ? true : j.left == j.right && !curve.closed},
+         {"C", level_name('C', j.c)},
+         {"G", level_name('G', j.g)},
+         {"gap", j.gap},
+         {"angle", j.angle * 180 / std::numbers::pi},
+         {"angle_unit", "degree"},
+         {"curvature_left", j.curvature_left},
+         {"curvature_right", j.curvature_right},
+         {"curvature_gap", j.curvature_gap},
+         {"speed_ratio", j.speed_ratio},
+         {"kind", join_kind_name(j.kind)}});
   return list;
 }
 
 Json points_json(const std::vector<CurvePoint>& points, int dimension, const char* value) {
   Json list = Json::array();
-  for (const CurvePoint& p : points) list.push_back({{"at", p.at}, {"point", point_json(p.point, dimension)}, {value, p.value}});
+  for (const CurvePoint& p : points)
+    list.push_back({{"at", p.at}, {"point", point_json(p.point, dimension)}, {value, p.value}});
   return list;
 }
 
@@ -48,28 +63,42 @@ Json crossings_json(const std::vector<Crossing>& crossings, int dimension) {
 Json curve_json(const Curve& curve, const CurveWork& work) {
   const int d = curve.dimension;
   const Bounds3 box = exact_bounds(curve);
-  Json v = {{"degree", curve.degree()}, {"segments", curve.segment_count()}, {"dimension", d}, {"rational", curve.rational()}, {"closed", curve.closed},
-            {"parameters", {curve.begin(), curve.end()}}, {"length", arc_length(curve)}};
-  v["bounds"] = d == 3 ? Json{box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z} : Json{box.low.x, box.low.y, box.high.x, box.high.y};
+  Json v = {{"degree", curve.degree()},
+            {"segments", curve.segment_count()},
+            {"dimension", d},
+            {"rational", curve.rational()},
+            {"closed", curve.closed},
+            {"parameters", {curve.begin(), curve.end()}},
+            {"length", arc_length(curve)}};
+  v["bounds"] = d == 3 ? Json{box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z}
+                       : Json{box.low.x, box.low.y, box.high.x, box.high.y};
   if (d == 2 && curve.closed) v["area"] = signed_area(curve);
   v["joins"] = joins_json(curve);
   if (d == 2) v["inflections"] = points_json(inflections(curve), d, "curvature");
   v["curvature_extrema"] = points_json(curvature_extrema(curve), d, "curvature");
   if (work.crossings) v["self_intersections"] = crossings_json(self_intersections(curve), d);
   if (!work.closest.empty())
-    v["closest"] = points_json(closest_points(curve, {work.closest[0], work.closest[1], work.closest.size() > 2 ? work.closest[2] : 0}), d, "distance");
+    v["closest"] = points_json(
+        closest_points(curve, {work.closest[0], work.closest[1], work.closest.size() > 2 ? work.closest[2] : 0}), d,
+        "distance");
   if (!work.at.empty()) {
     Json list = Json::array();
     for (const double u : work.at) {
       const CurveJet jet = evaluate_jet(curve, u);
-      list.push_back({{"at", u}, {"point", point_json(jet.point, d)}, {"first", point_json(jet.first, d)}, {"second", point_json(jet.second, d)}, {"curvature", curvature(curve, u)}});
+      list.push_back({{"at", u},
+                      {"point", point_json(jet.point, d)},
+                      {"first", point_json(jet.first, d)},
+                      {"second", point_json(jet.second, d)},
+                      {"curvature", curvature(curve, u)}});
     }
     v["values"] = std::move(list);
   }
   return v;
 }
 
-void line(std::string& out, const std::string& text) { out += text + "\n"; }
+void line(std::string& out, const std::string& text) {
+  out += text + "\n";
+}
 
 std::string numbers(const Json& list) {
   std::string out;
@@ -116,7 +145,8 @@ Json report_curves(const std::vector<NamedCurve>& curves, const CurveWork& work,
     for (std::size_t i = 0; i < curves.size(); ++i)
       for (std::size_t j = i + 1; j < curves.size(); ++j)
         if (curves[i].curve && curves[j].curve)
-          for (Json& one : crossings_json(intersections(*curves[i].curve, *curves[j].curve), curves[i].curve->dimension)) {
+          for (Json& one :
+               crossings_json(intersections(*curves[i].curve, *curves[j].curve), curves[i].curve->dimension)) {
             one["curves"] = {i, j};
             all.push_back(std::move(one));
           }
@@ -129,42 +159,61 @@ std::string report_text(const Json& report) {
   std::string out;
   std::size_t index = 0;
   for (const Json& c : report["curves"]) {
-    line(out, fmt::format("curves[{}]{}: {}", index++, c.contains("name") ? " \"" + c["name"].get<std::string>() + "\"" : "", c["kind"].get<std::string>()));
+    line(out,
+         fmt::format("curves[{}]{}: {}", index++, c.contains("name") ? " \"" + c["name"].get<std::string>() + "\"" : "",
+                     c["kind"].get<std::string>()));
     if (c.contains("degree")) {
-      line(out, fmt::format("  degree {}, segments {}{}{}, parameters {}", c["degree"].get<int>(), c["segments"].get<std::size_t>(), c["rational"].get<bool>() ? ", rational" : "",
+      line(out, fmt::format("  degree {}, segments {}{}{}, parameters {}", c["degree"].get<int>(),
+                            c["segments"].get<std::size_t>(), c["rational"].get<bool>() ? ", rational" : "",
                             c["closed"].get<bool>() ? ", closed" : "", numbers(c["parameters"])));
-      line(out, fmt::format("  length {:.10g}, bounds {}{}", c["length"].get<double>(), numbers(c["bounds"]), c.contains("area") ? fmt::format(", area {:.10g}", c["area"].get<double>()) : ""));
-      if (c.contains("degree_error")) line(out, fmt::format("  error of the degree reduction at most {:.3g}", c["degree_error"].get<double>()));
+      line(out, fmt::format("  length {:.10g}, bounds {}{}", c["length"].get<double>(), numbers(c["bounds"]),
+                            c.contains("area") ? fmt::format(", area {:.10g}", c["area"].get<double>()) : ""));
+      if (c.contains("degree_error"))
+        line(out, fmt::format("  error of the degree reduction at most {:.3g}", c["degree_error"].get<double>()));
       for (const Json& j : c["joins"])
-        line(out, fmt::format("  {} at {:.10g}: {} {} {}  gap {:.3g}  angle {:.6g} deg  curvature {:.6g} | {:.6g}", j["inside"].get<bool>() ? "point" : "join", j["at"].get<double>(),
-                              j["C"].get<std::string>(), j["G"].get<std::string>(), j["kind"].get<std::string>(), j["gap"].get<double>(), j["angle"].get<double>(),
-                              j["curvature_left"].get<double>(), j["curvature_right"].get<double>()));
+        line(out, fmt::format("  {} at {:.10g}: {} {} {}  gap {:.3g}  angle {:.6g} deg  curvature {:.6g} | {:.6g}",
+                              j["inside"].get<bool>() ? "point" : "join", j["at"].get<double>(),
+                              j["C"].get<std::string>(), j["G"].get<std::string>(), j["kind"].get<std::string>(),
+                              j["gap"].get<double>(), j["angle"].get<double>(), j["curvature_left"].get<double>(),
+                              j["curvature_right"].get<double>()));
       for (const char* key : {"inflections", "curvature_extrema"})
         if (c.contains(key))
           for (const Json& p : c[key])
-            line(out, fmt::format("  {} at {:.10g}: point {}, curvature {:.6g}", std::string(key) == "inflections" ? "inflection" : "curvature extremum", p["at"].get<double>(), numbers(p["point"]),
-                                  p["curvature"].get<double>()));
+            line(out, fmt::format("  {} at {:.10g}: point {}, curvature {:.6g}",
+                                  std::string(key) == "inflections" ? "inflection" : "curvature extremum",
+                                  p["at"].get<double>(), numbers(p["point"]), p["curvature"].get<double>()));
       if (c.contains("self_intersections"))
-        for (const Json& p : c["self_intersections"]) line(out, fmt::format("  crosses itself at {}: point {}", numbers(p["at"]), numbers(p["point"])));
+        for (const Json& p : c["self_intersections"])
+          line(out, fmt::format("  crosses itself at {}: point {}", numbers(p["at"]), numbers(p["point"])));
       if (c.contains("closest"))
-        for (const Json& p : c["closest"]) line(out, fmt::format("  nearest at {:.10g}: point {}, distance {:.10g}", p["at"].get<double>(), numbers(p["point"]), p["distance"].get<double>()));
+        for (const Json& p : c["closest"])
+          line(out, fmt::format("  nearest at {:.10g}: point {}, distance {:.10g}", p["at"].get<double>(),
+                                numbers(p["point"]), p["distance"].get<double>()));
       if (c.contains("values"))
         for (const Json& p : c["values"])
-          line(out, fmt::format("  at {:.10g}: point {}; first {}; second {}; curvature {:.6g}", p["at"].get<double>(), numbers(p["point"]), numbers(p["first"]), numbers(p["second"]),
+          line(out, fmt::format("  at {:.10g}: point {}; first {}; second {}; curvature {:.6g}", p["at"].get<double>(),
+                                numbers(p["point"]), numbers(p["first"]), numbers(p["second"]),
                                 p["curvature"].get<double>()));
     } else if (c.contains("visited_cells")) {
-      line(out, fmt::format("  {}; lines {} ({} closed), vertices {}, cells without a certificate {}, doubtful {}", c["polynomial"].get<bool>() ? "polynomial" : "by intervals",
-                            c["lines"].get<std::size_t>(), c["closed_lines"].get<std::size_t>(), c["vertices"].get<std::size_t>(), c["unresolved_cells"].get<std::size_t>(), c["doubtful_cells"].get<std::size_t>()));
+      line(out, fmt::format("  {}; lines {} ({} closed), vertices {}, cells without a certificate {}, doubtful {}",
+                            c["polynomial"].get<bool>() ? "polynomial" : "by intervals", c["lines"].get<std::size_t>(),
+                            c["closed_lines"].get<std::size_t>(), c["vertices"].get<std::size_t>(),
+                            c["unresolved_cells"].get<std::size_t>(), c["doubtful_cells"].get<std::size_t>()));
       line(out, fmt::format("  looked at {} cells, {:.3g} % of {}; kept {}", c["visited_cells"].get<std::size_t>(),
-                            100.0 * static_cast<double>(c["visited_cells"].get<std::size_t>()) / static_cast<double>(c["grid_cells"].get<std::size_t>()), c["grid_cells"].get<std::size_t>(), c["kept_cells"].get<std::size_t>()));
+                            100.0 * static_cast<double>(c["visited_cells"].get<std::size_t>()) /
+                                static_cast<double>(c["grid_cells"].get<std::size_t>()),
+                            c["grid_cells"].get<std::size_t>(), c["kept_cells"].get<std::size_t>()));
     } else {
-      line(out, fmt::format("  lines {}, vertices {}, evaluations {}{}", c["lines"].get<std::size_t>(), c["vertices"].get<std::size_t>(), c["evaluations"].get<std::size_t>(),
+      line(out, fmt::format("  lines {}, vertices {}, evaluations {}{}", c["lines"].get<std::size_t>(),
+                            c["vertices"].get<std::size_t>(), c["evaluations"].get<std::size_t>(),
                             c["breaks"].empty() ? "" : ", breaks at " + numbers(c["breaks"])));
     }
   }
   if (report.contains("intersections"))
     for (const Json& p : report["intersections"])
-      line(out, fmt::format("curves[{}] meets curves[{}] at {}: point {}{}", p["curves"][0].get<int>(), p["curves"][1].get<int>(), numbers(p["at"]), numbers(p["point"]), p.contains("overlap") ? " (a stretch in common)" : ""));
+      line(out, fmt::format("curves[{}] meets curves[{}] at {}: point {}{}", p["curves"][0].get<int>(),
+                            p["curves"][1].get<int>(), numbers(p["at"]), numbers(p["point"]),
+                            p.contains("overlap") ? " (a stretch in common)" : ""));
   return out;
 }
 

@@ -25,7 +25,9 @@ std::vector<CurveSpec> read_specs(const std::string& file, const Program& progra
     int transforms = 0;
     for (const Curve& curve : read_svg(file, &transforms)) specs.push_back(to_spec(curve));
     if (transforms > 0)
-      program.say(fmt::format("'{}': {} elements stand under a transform, which is not applied: the numbers are taken as they are", file, transforms));
+      program.say(fmt::format(
+          "'{}': {} elements stand under a transform, which is not applied: the numbers are taken as they are", file,
+          transforms));
     return specs;
   }
   for (const VectorLine& line : read_vector_lines(file)) {
@@ -73,8 +75,13 @@ std::vector<VectorLine> lines_of(const NamedCurve& c, double tolerance) {
     const double t = tolerance > 0 ? tolerance : 1e-4 * std::max(control_size(c.curve->points), 1e-300);
     const FlatCurve flat = flatten(*c.curve, t);
     for (std::size_t k = 0; k < flat.starts.size(); ++k) {
-      const std::size_t from = flat.starts[k], to = k + 1 < flat.starts.size() ? flat.starts[k + 1] : flat.points.size();
-      VectorLine line{c.spec.name, {flat.points.begin() + static_cast<std::ptrdiff_t>(from), flat.points.begin() + static_cast<std::ptrdiff_t>(to)}, c.curve->dimension, flat.closed};
+      const std::size_t from = flat.starts[k],
+                        to = k + 1 < flat.starts.size() ? flat.starts[k + 1] : flat.points.size();
+      VectorLine line{c.spec.name,
+                      {flat.points.begin() + static_cast<std::ptrdiff_t>(from),
+                       flat.points.begin() + static_cast<std::ptrdiff_t>(to)},
+                      c.curve->dimension,
+                      flat.closed};
       if (line.closed) line.points.pop_back();
       lines.push_back(std::move(line));
     }
@@ -99,12 +106,17 @@ CurveSpec converted(const NamedCurve& c, const std::string& kind) {
     spec.weights = s.weights;
     spec.closed = c.curve->closed;
   } else if (kind == "hermite") {
-    if (c.curve->rational() || c.curve->degree() > 3) throw UsageError(fmt::format("{}: only polynomial curves of degree 3 or less are cubic Hermite curves; use --degree 3", c.where));
+    if (c.curve->rational() || c.curve->degree() > 3)
+      throw UsageError(fmt::format(
+          "{}: only polynomial curves of degree 3 or less are cubic Hermite curves; use --degree 3", c.where));
     const HermiteData data = to_hermite(elevate(*c.curve, 3));
     for (std::size_t i = 0; i < data.points.size(); ++i) {
       const bool shared = i % 2 == 0 && i > 0;
-      if (shared && norm(data.points[i] - data.points[i - 1]) + norm(data.tangents[i] - data.tangents[i - 1]) > 1e-9 * (control_size(c.curve->points) + norm(data.tangents[i])))
-        throw UsageError(fmt::format("{}: at parameter {} the curve is not C1: it has no Hermite form with one tangent a point", c.where, data.breaks[i]));
+      if (shared && norm(data.points[i] - data.points[i - 1]) + norm(data.tangents[i] - data.tangents[i - 1]) >
+                        1e-9 * (control_size(c.curve->points) + norm(data.tangents[i])))
+        throw UsageError(
+            fmt::format("{}: at parameter {} the curve is not C1: it has no Hermite form with one tangent a point",
+                        c.where, data.breaks[i]));
       if (shared) continue;
       spec.points.push_back(data.points[i]);
       spec.tangents.push_back(data.tangents[i]);
@@ -112,7 +124,9 @@ CurveSpec converted(const NamedCurve& c, const std::string& kind) {
     }
     spec.kind = CurveKind::hermite;
   } else {
-    if (c.curve->segment_count() != 1) throw UsageError(fmt::format("{}: the power basis is for one segment; this curve has {}: --cut it", c.where, c.curve->segment_count()));
+    if (c.curve->segment_count() != 1)
+      throw UsageError(fmt::format("{}: the power basis is for one segment; this curve has {}: --cut it", c.where,
+                                   c.curve->segment_count()));
     spec.kind = CurveKind::power;
     spec.points = to_power(c.curve->segment(0));
     spec.breaks = {c.curve->begin(), c.curve->end()};
@@ -183,18 +197,23 @@ void draw(const std::vector<NamedCurve>& curves, const std::string& path, const 
   for (std::size_t i = 0; i < curves.size(); ++i) add_to_panel(panel, curves[i], work, curve_color(i));
   fit_panel(panel);
   for (const NamedCurve& c : curves) {
-    if (c.spec.kind == CurveKind::implicit_form && curves.size() == 1) panel.low = {c.spec.box[0], c.spec.box[1]}, panel.high = {c.spec.box[2], c.spec.box[3]};
-    if (c.graph && curves.size() == 1) panel.low.y = c.graph->low - 0.06 * (c.graph->high - c.graph->low), panel.high.y = c.graph->high + 0.06 * (c.graph->high - c.graph->low);
+    if (c.spec.kind == CurveKind::implicit_form && curves.size() == 1)
+      panel.low = {c.spec.box[0], c.spec.box[1]}, panel.high = {c.spec.box[2], c.spec.box[3]};
+    if (c.graph && curves.size() == 1)
+      panel.low.y = c.graph->low - 0.06 * (c.graph->high - c.graph->low),
+      panel.high.y = c.graph->high + 0.06 * (c.graph->high - c.graph->low);
   }
   if (!work.window.empty()) {
     panel.low = {work.window[0], work.window[1]};
     panel.high = {work.window[2], work.window[3]};
-    if (!(panel.low.x < panel.high.x && panel.low.y < panel.high.y)) throw UsageError("--window: xmin < xmax and ymin < ymax are needed", {}, "--window");
+    if (!(panel.low.x < panel.high.x && panel.low.y < panel.high.y))
+      throw UsageError("--window: xmin < xmax and ymin < ymax are needed", {}, "--window");
   }
   picture.panels.push_back(std::move(panel));
   if (work.hodograph)
     for (std::size_t i = 0; i < curves.size(); ++i)
-      if (curves[i].curve) picture.panels.push_back(hodograph_panel(project(*curves[i].curve, work.view), curve_color(i)));
+      if (curves[i].curve)
+        picture.panels.push_back(hodograph_panel(project(*curves[i].curve, work.view), curve_color(i)));
   write_picture(picture, path, overwrite);
 }
 
@@ -240,10 +259,12 @@ std::vector<NamedCurve> load_curves(const std::string& file, const CurveWork& wo
   return curves;
 }
 
-void write_curves(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite, const Context& context) {
+void write_curves(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite,
+                  const Context& context) {
   context.check();
   if (path.ends_with(".json")) return write_json(curves, path, work, overwrite);
-  if (path.ends_with(".svg") || path.ends_with(".pdf") || path.ends_with(".png")) return draw(curves, path, work, overwrite);
+  if (path.ends_with(".svg") || path.ends_with(".pdf") || path.ends_with(".png"))
+    return draw(curves, path, work, overwrite);
   std::vector<VectorLine> lines;
   for (const NamedCurve& c : curves)
     for (VectorLine& line : lines_of(c, work.flatten)) lines.push_back(std::move(line));

@@ -17,7 +17,8 @@ struct CurveWork {
   int degree = 0;
   bool reverse = false, crossings = false;
   std::vector<double> cut, closest, at;
-  bool control = false, tangents = false, comb = false, hodograph = false, joins = false, points = false, axes = false, stretch = false;
+  bool control = false, tangents = false, comb = false, hodograph = false, joins = false, points = false, axes = false,
+       stretch = false;
   double comb_scale = 0;
   std::optional<double> casteljau;
   std::vector<double> window;
@@ -30,16 +31,18 @@ struct CurveWork {
 /// A curve of the file, in whatever form it can be had.
 struct NamedCurve {
   CurveSpec spec;
-  std::string where;                       ///< "curves[2]"
-  std::optional<Curve> curve;              ///< the hub form, where there is an exact one
-  std::optional<ExplicitCurve> graph;      ///< a formula in x that is no polynomial
-  std::optional<ImplicitCurve> level;      ///< a formula in x and y
-  double reduction_error = -1;             ///< of --degree
+  std::string where;                   ///< "curves[2]"
+  std::optional<Curve> curve;          ///< the hub form, where there is an exact one
+  std::optional<ExplicitCurve> graph;  ///< a formula in x that is no polynomial
+  std::optional<ImplicitCurve> level;  ///< a formula in x and y
+  double reduction_error = -1;         ///< of --degree
 };
 
 std::vector<NamedCurve> load_curves(const std::string& file, const CurveWork& work, const Program& program);
-void write_curves(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite, const Context& context);
-nlohmann::ordered_json report_curves(const std::vector<NamedCurve>& curves, const CurveWork& work, const Context& context);
+void write_curves(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite,
+                  const Context& context);
+nlohmann::ordered_json report_curves(const std::vector<NamedCurve>& curves, const CurveWork& work,
+                                     const Context& context);
 std::string report_text(const nlohmann::ordered_json& report);
 
 }  // namespace retalho::app

@@ -170,9 +170,11 @@ CurveSpec parse_curve(const Json& v, const std::string& where) {
                                       {"clamped", SplineEnds::clamped},
                                       {"periodic", SplineEnds::periodic}});
     else if (key == "parameters")
-      spec.parameters = choice<Parameters>(
-          value, at,
-          {{"uniform", Parameters::uniform}, {"centripetal", Parameters::centripetal}, {"chord", Parameters::chord}, {"x", Parameters::x}});
+      spec.parameters = choice<Parameters>(value, at,
+                                           {{"uniform", Parameters::uniform},
+                                            {"centripetal", Parameters::centripetal},
+                                            {"chord", Parameters::chord},
+                                            {"x", Parameters::x}});
     else if (key == "box") {
       spec.box = numbers(value, at);
       if (spec.box.size() != 4 || !(spec.box[0] < spec.box[2]) || !(spec.box[1] < spec.box[3]))

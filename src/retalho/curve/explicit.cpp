@@ -11,8 +11,8 @@ namespace retalho {
 
 namespace {
 
-constexpr int kDeepest = 31;       // gaps are narrower than 2^-31 of the interval
-constexpr int kFlatDeepest = 14;   // where f is continuous but wild, stop refining here
+constexpr int kDeepest = 31;      // gaps are narrower than 2^-31 of the interval
+constexpr int kFlatDeepest = 14;  // where f is continuous but wild, stop refining here
 constexpr std::size_t kMostEvaluations = 2'000'000;
 
 class Tracing {
@@ -55,7 +55,8 @@ class Tracing {
     const double height = out_.high - out_.low;
     for (const double t : {0.5, 0.25, 0.618}) {
       const Vec2 p = at(a.x + t * (b.x - a.x));
-      const double dx = (b.x - a.x) / x_scale_, dy = (b.y - a.y) / height, off = (p.y - (a.y + t * (b.y - a.y))) / height;
+      const double dx = (b.x - a.x) / x_scale_, dy = (b.y - a.y) / height,
+                   off = (p.y - (a.y + t * (b.y - a.y))) / height;
       // Distance from the chord in the window's unit square.
       if (!(std::abs(off) * dx <= tolerance_ * std::hypot(dx, dy))) return false;
     }
@@ -110,15 +111,20 @@ void choose_window(const Expression& f, double from, double to, ExplicitCurve& o
 
 }  // namespace
 
-ExplicitCurve trace_explicit(const Expression& f, double from, double to, const ExplicitOptions& options, const Context& context) {
-  if (!(from < to) || !std::isfinite(to - from)) throw UsageError(fmt::format("the interval from {} to {} is empty", from, to));
-  if (f.uses_y()) throw BadInput(fmt::format("formula \"{}\": an explicit curve is a function of x alone; use kind \"implicit\" for f(x, y) = 0", f.text()));
+ExplicitCurve trace_explicit(const Expression& f, double from, double to, const ExplicitOptions& options,
+                             const Context& context) {
+  if (!(from < to) || !std::isfinite(to - from))
+    throw UsageError(fmt::format("the interval from {} to {} is empty", from, to));
+  if (f.uses_y())
+    throw BadInput(fmt::format(
+        "formula \"{}\": an explicit curve is a function of x alone; use kind \"implicit\" for f(x, y) = 0", f.text()));
   ExplicitCurve out;
   out.low = options.low;
   out.high = options.high;
   if (!(options.low < options.high)) choose_window(f, from, to, out);
   Tracing(f, options, to - from, out, context).run(from, to);
-  if (out.lines.empty()) throw BadInput(fmt::format("formula \"{}\" is defined nowhere between {} and {}", f.text(), from, to));
+  if (out.lines.empty())
+    throw BadInput(fmt::format("formula \"{}\" is defined nowhere between {} and {}", f.text(), from, to));
   return out;
 }
 

@@ -19,8 +19,8 @@ struct ExplicitOptions {
 
 struct ExplicitCurve {
   std::vector<std::vector<Vec2>> lines;  ///< ascending in x; between two lines f was not proved to be continuous
-  std::vector<double> breaks;            ///< middles of the gaps inside of the interval: poles, jumps, ends of the domain
-  double low = 0, high = 1;              ///< the window in y
+  std::vector<double> breaks;  ///< middles of the gaps inside of the interval: poles, jumps, ends of the domain
+  double low = 0, high = 1;    ///< the window in y
   std::size_t evaluations = 0;
 };
 

@@ -83,11 +83,11 @@ Lagrange::Lagrange(std::vector<double> nodes, std::vector<double> values)
   for (std::size_t j = 0; j < nodes_.size(); ++j) {
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       if (k == j) continue;
-      const double d = (nodes_[j] - nodes_[k]) / capacity;
+      const double d = nodes_[j] - nodes_[k];
       if (d == 0)
         throw BadInput(fmt::format("node {} is given twice", nodes_[j]), {}, fmt::format("nodes[{}]", std::max(j, k)));
       int e = 0;
-      weights_[j] = std::frexp(weights_[j] / d, &e);
+      weights_[j] = std::frexp(weights_[j] / (d / capacity), &e);
       exponents[j] += e;
     }
   }
@@ -245,11 +245,14 @@ std::vector<double> point_parameters(std::span<const Vec3> points, Parameters ki
     const std::string where = fmt::format("points[{}]", i);
     if (kind == Parameters::x) {
       if (!(points[i].x > points[i - 1].x))
-        throw BadInput(fmt::format("x = {} after {}: with the parameters \"x\" they must ascend", points[i].x, points[i - 1].x), {}, where);
+        throw BadInput(
+            fmt::format("x = {} after {}: with the parameters \"x\" they must ascend", points[i].x, points[i - 1].x),
+            {}, where);
       u.push_back(points[i].x);
       continue;
     }
-    if (kind != Parameters::uniform && !(d > 0)) throw BadInput("repeats the point before it: merge them, or use uniform parameters", {}, where);
+    if (kind != Parameters::uniform && !(d > 0))
+      throw BadInput("repeats the point before it: merge them, or use uniform parameters", {}, where);
     u.push_back(u.back() + (kind == Parameters::uniform ? 1.0 : kind == Parameters::chord ? d : std::sqrt(d)));
   }
   return u;

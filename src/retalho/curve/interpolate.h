@@ -46,7 +46,8 @@ std::vector<double> spline_slopes(std::span<const double> x, std::span<const dou
 /// y = s(x) as a plane curve, x the parameter.
 Curve spline_graph(std::span<const double> x, std::span<const double> y, const SplineOptions& options = {});
 
-/// How the parameters of points are chosen: |P_i+1 - P_i| to the power 0, 1/2 or 1, or the points' own x (a graph y(x)).
+/// How the parameters of points are chosen: |P_i+1 - P_i| to the power 0, 1/2 or 1, or the points' own x (a graph
+/// y(x)).
 enum class Parameters { uniform, centripetal, chord, x };
 const char* parameters_name(Parameters parameters);
 /// Starts at 0 (at the first x for Parameters::x). Throws BadInput naming the first point that repeats the one before
@@ -56,8 +57,8 @@ std::vector<double> point_parameters(std::span<const Vec3> points, Parameters ki
 struct PointSplineOptions {
   SplineEnds ends = SplineEnds::not_a_knot;
   Parameters parameters = Parameters::centripetal;
-  bool closed = false;               ///< periodic through the first point again; the list need not repeat it
-  Vec3 first_tangent, last_tangent;  ///< dQ/du for clamped
+  bool closed = false;                         ///< periodic through the first point again; the list need not repeat it
+  Vec3 first_tangent = {}, last_tangent = {};  ///< dQ/du for clamped
 };
 /// The cubic spline curve through points, C2 everywhere.
 Curve interpolate_points(std::span<const Vec3> points, int dimension, const PointSplineOptions& options = {});

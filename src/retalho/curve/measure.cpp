@@ -16,11 +16,17 @@ bool is_zero(const Bernstein& b) {
   return std::all_of(b.begin(), b.end(), [](double v) { return v == 0; });
 }
 
+double magnitude(const Bernstein& b) {
+  double m = 0;
+  for (const double v : b) m = std::max(m, std::abs(v));
+  return m;
+}
+
 /// Roots inside (0, 1), simple or not; nothing for the zero polynomial.
-std::vector<double> inner_roots(const Bernstein& b) {
+std::vector<double> inner_roots(const Bernstein& b, double zero = -1) {
   std::vector<double> result;
   if (is_zero(b)) return result;
-  for (const BernsteinRoot& r : roots(b))
+  for (const BernsteinRoot& r : roots(b, {.zero = zero}))
     if (r.t > 0 && r.t < 1 && r.radius < 0.25) result.push_back(r.t);
   return result;
 }
@@ -139,7 +145,9 @@ std::vector<CurvePoint> curvature_extrema(const Curve& curve) {
     for (const double v : c2) size = std::max(size, std::abs(v));
     if (size <= 1e-14 * bounds(speed2).second) continue;  // a straight line
     const double largest = bounds(speed2).second;
-    for (const double t : inner_roots(slope)) {
+    // On a circle the two terms cancel all along: what is left of them is rounding, no extremum.
+    const double zero = 1e-13 * (magnitude(left) * largest + 3 * magnitude(product(forms.w, c2)) * magnitude(turn));
+    for (const double t : inner_roots(slope, zero)) {
       const double speed = evaluate(speed2, t);
       if (speed <= 1e-18 * largest) continue;  // a cusp: the curvature is infinite there
       result.push_back(at_local(s, t, local_curvature(s, t, curve.dimension)));
@@ -174,7 +182,7 @@ double signed_area(const Curve& curve) {
           const CurveJet jet = evaluate_jet(s, t);
           return (jet.point.x - origin.x) * jet.first.y - (jet.point.y - origin.y) * jet.first.x;
         },
-        0, 1, 1e-15 * size * (size + norm(last - origin)));
+        0, 1, 1e-14 * size * (size + norm(last - origin)));
   }
   twice += straight(last, origin);
   return twice / 2;

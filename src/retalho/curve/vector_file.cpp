@@ -26,7 +26,8 @@ void register_drivers() {
 void add_line(const OGRLineString& line, bool ring, const std::string& name, std::vector<VectorLine>& out) {
   if (line.getNumPoints() < 2) return;
   VectorLine v{name, {}, line.Is3D() ? 3 : 2, ring || line.get_IsClosed() != 0};
-  for (int i = 0; i < line.getNumPoints(); ++i) v.points.push_back({line.getX(i), line.getY(i), line.Is3D() ? line.getZ(i) : 0});
+  for (int i = 0; i < line.getNumPoints(); ++i)
+    v.points.push_back({line.getX(i), line.getY(i), line.Is3D() ? line.getZ(i) : 0});
   if (v.closed && v.points.size() > 2 && v.points.front() == v.points.back()) v.points.pop_back();
   out.push_back(std::move(v));
 }
@@ -39,7 +40,9 @@ void add_geometry(const OGRGeometry* geometry, const std::string& name, std::vec
     geometry = linear.get();
   }
   switch (wkbFlatten(geometry->getGeometryType())) {
-    case wkbLineString: add_line(*geometry->toLineString(), false, name, out); break;
+    case wkbLineString:
+      add_line(*geometry->toLineString(), false, name, out);
+      break;
     case wkbPolygon:
       for (const auto* ring : *geometry->toPolygon()) add_line(*ring, true, name, out);
       break;
@@ -48,7 +51,8 @@ void add_geometry(const OGRGeometry* geometry, const std::string& name, std::vec
     case wkbGeometryCollection:
       for (const auto* part : *geometry->toGeometryCollection()) add_geometry(part, name, out);
       break;
-    default: break;
+    default:
+      break;
   }
 }
 
@@ -63,7 +67,8 @@ std::string gdal_message() {
   return message.empty() ? "GDAL gives no reason" : message;
 }
 
-void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const std::string& file, const std::string& path, bool geojson, bool attributes) {
+void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const std::string& file,
+                 const std::string& path, bool geojson, bool attributes) {
   const Dataset data(driver.Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr), [](GDALDataset* d) { GDALClose(d); });
   if (!data) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
   bool space = false;
@@ -74,7 +79,8 @@ void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const
   CSLDestroy(layer_options);
   if (!layer) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
   OGRFieldDefn field("name", OFTString);
-  if (attributes && layer->CreateField(&field) != OGRERR_NONE) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+  if (attributes && layer->CreateField(&field) != OGRERR_NONE)
+    throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
   for (const VectorLine& l : lines) {
     const std::unique_ptr<OGRFeature> feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     OGRLineString line;
@@ -83,7 +89,8 @@ void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const
     if (l.closed && !(l.points.front() == l.points.back())) add(l.points.front());
     if (attributes) feature->SetField("name", l.name.c_str());
     feature->SetGeometry(&line);
-    if (layer->CreateFeature(feature.get()) != OGRERR_NONE) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
+    if (layer->CreateFeature(feature.get()) != OGRERR_NONE)
+      throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
   }
 }
 
@@ -93,8 +100,11 @@ std::vector<VectorLine> read_vector_lines(const std::string& path) {
   register_drivers();
   CPLErrorReset();
   CPLPushErrorHandler(CPLQuietErrorHandler);
-  const Dataset data(static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr)),
-                     [](GDALDataset* d) { if (d) GDALClose(d); });
+  const Dataset data(
+      static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr)),
+      [](GDALDataset* d) {
+        if (d) GDALClose(d);
+      });
   const std::string trouble = CPLGetLastErrorMsg();
   CPLPopErrorHandler();
   if (!data) {
@@ -123,7 +133,9 @@ void write_vector_lines(const std::vector<VectorLine>& lines, const std::string&
   AtomicFile file(path, overwrite);
   CPLErrorReset();
   CPLPushErrorHandler(CPLQuietErrorHandler);
-  struct Pop { ~Pop() { CPLPopErrorHandler(); } } pop;
+  struct Pop {
+    ~Pop() { CPLPopErrorHandler(); }
+  } pop;
   const std::string kind = format->driver;
   std::filesystem::remove(file.temporary());  // the driver makes the file itself
   write_lines(*driver, lines, file.temporary(), path, kind == "GeoJSON", kind != "DXF");

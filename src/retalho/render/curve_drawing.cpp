@@ -1,5 +1,7 @@
 #include "retalho/render/curve_drawing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +16,9 @@ namespace {
 
 constexpr Rgb kGrey{150, 150, 150};
 
-Vec2 flat(Vec3 p) { return {p.x, p.y}; }
+Vec2 flat(Vec3 p) {
+  return {p.x, p.y};
+}
 
 PlanePath polyline(const std::vector<Vec2>& points, bool closed = false) {
   PlanePath path;
@@ -47,16 +51,25 @@ Curve project(const Curve& curve, CurveView view) {
   constexpr double ca = 0.8191520442889918, sa = 0.5735764363510461, ce = 0.9063077870366499, se = 0.42261826174069944;
   Affine m{};
   switch (view) {
-    case CurveView::iso: m = {{{ca, -sa, 0, 0}, {sa * se, ca * se, ce, 0}, {0, 0, 0, 0}}}; break;
-    case CurveView::top: m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0}}}; break;
-    case CurveView::front: m = {{{1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 0}}}; break;
-    case CurveView::side: m = {{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 0}}}; break;
+    case CurveView::iso:
+      m = {{{ca, -sa, 0, 0}, {sa * se, ca * se, ce, 0}, {0, 0, 0, 0}}};
+      break;
+    case CurveView::top:
+      m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0}}};
+      break;
+    case CurveView::front:
+      m = {{{1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 0}}};
+      break;
+    case CurveView::side:
+      m = {{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 0}}};
+      break;
   }
   return with_dimension(transform(curve, m), 2);
 }
 
 Rgb curve_color(std::size_t n) {
-  static constexpr Rgb kColors[] = {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}};
+  static constexpr Rgb kColors[] = {{0, 114, 178},   {213, 94, 0},   {0, 158, 115},
+                                    {204, 121, 167}, {86, 180, 233}, {230, 159, 0}};
   return kColors[n % std::size(kColors)];
 }
 
@@ -132,7 +145,8 @@ void draw_casteljau(PicturePanel& panel, const Curve& plane, double u) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const bool last = r + 1 == rows.size();
       panel.dots.push_back({points[k], last ? 5.0 : 3.0, last ? Rgb{200, 0, 0} : color, false});
-      if (!last) panel.labels.push_back({points[k], "b" + std::to_string(k) + (r > 0 ? "^" + std::to_string(r) : ""), color});
+      if (!last)
+        panel.labels.push_back({points[k], r > 0 ? fmt::format("b{}^{}", k, r) : fmt::format("b{}", k), color});
     }
     if (points.size() > 1) add_line(panel, std::move(points), color, 1.2, r == 0);
   }
@@ -142,7 +156,8 @@ void draw_joins(PicturePanel& panel, const Curve& plane, Rgb color) {
   if (plane.empty()) return;
   panel.dots.push_back({flat(plane.points.front()), 2.6, color, false});
   panel.dots.push_back({flat(plane.points.back()), 2.6, color, false});
-  for (const Join& join : analyse_joins(plane)) panel.dots.push_back({flat(join.point), 3.4, color, join.kind != JoinKind::regular || join.g < 0});
+  for (const Join& join : analyse_joins(plane))
+    panel.dots.push_back({flat(join.point), 3.4, color, join.kind != JoinKind::regular || join.g < 0});
 }
 
 void draw_explicit(PicturePanel& panel, const ExplicitCurve& curve, const Stroke& stroke) {
@@ -158,7 +173,8 @@ void draw_explicit(PicturePanel& panel, const ExplicitCurve& curve, const Stroke
 void draw_implicit(PicturePanel& panel, const ImplicitCurve& curve, const Stroke& stroke) {
   for (const PlaneBox& b : curve.doubtful) panel.boxes.push_back({{b.x0, b.y0}, {b.x1, b.y1}, {225, 225, 225}});
   for (const PlaneBox& b : curve.unresolved) panel.boxes.push_back({{b.x0, b.y0}, {b.x1, b.y1}, {200, 0, 0}});
-  for (const ImplicitLine& line : curve.lines) panel.paths.push_back({polyline(line.points, line.closed), stroke, false});
+  for (const ImplicitLine& line : curve.lines)
+    panel.paths.push_back({polyline(line.points, line.closed), stroke, false});
 }
 
 PicturePanel hodograph_panel(const Curve& plane, Rgb color) {
