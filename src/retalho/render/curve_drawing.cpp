@@ -74,8 +74,10 @@ Rgb curve_color(std::size_t n) {
 }
 
 void draw_curve(PicturePanel& panel, const Curve& plane, const Stroke& stroke) {
-  // Only what SVG cannot say exactly is flattened, to a ten-thousandth of the curve's size.
-  panel.paths.push_back({to_path(plane, std::max(1e-300, 1e-4 * control_size(plane.points))), stroke, false});
+  // Only what SVG cannot say exactly is flattened, to a ten-thousandth of the curve's size (not of its control
+  // polygon's, which may be far larger at high degrees).
+  const Bounds3 box = exact_bounds(plane);
+  panel.paths.push_back({to_path(plane, std::max(1e-300, 1e-4 * norm(box.high - box.low))), stroke, false});
 }
 
 void draw_control_polygon(PicturePanel& panel, const Curve& plane, Rgb color) {
