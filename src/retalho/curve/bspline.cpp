@@ -61,7 +61,7 @@ void insert_once(std::vector<double>& knots, std::vector<Point4>& c, std::size_t
   for (std::size_t i = 0; i < q.size(); ++i) {
     if (i + p <= k)
       q[i] = c[i];
-    else if (i > k)
+    else if (i > k || i == c.size())  // at the end of an unclamped curve u is knots[n]: the share of c[n] is 0
       q[i] = c[i - 1];
     else {
       const double a = (u - knots[i]) / (knots[i + p] - knots[i]);
