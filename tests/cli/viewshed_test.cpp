@@ -1,0 +1,78 @@
+// retalho viewshed from the command line.
+#include <gtest/gtest.h>
+
+#include "program.h"
+#include "retalho/raster/io.h"
+
+namespace retalho::test {
+namespace {
+
+/// A plain with a wall at column 20; cells 10 wide from (1000, 2000).
+struct Wall : ScratchFolder {
+  Wall() {
+    put("dem.asc", ascii_grid(40, 30, [](int c, int) { return c == 20 ? 50.0 : 0.0; }));
+  }
+};
+
+TEST(Viewshed, AWallHidesWhatIsBehindIt) {
+  const Wall folder;
+  const Outcome outcome = run(folder, "viewshed dem.asc -o v.tif --observer 1105,2155,2 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["observers"], 1);
+  EXPECT_EQ(outcome.json()["cells"], 1200);
+  EXPECT_EQ(outcome.json()["visible_cells"], 21 * 30);
+  const Raster v = read_raster(folder / "v.tif");
+  EXPECT_EQ(v.at(5, 5), 1);
+  EXPECT_EQ(v.at(20, 5), 1);
+  EXPECT_EQ(v.at(30, 5), 0);
+  EXPECT_EQ(v.georef.origin_x, 1005);
+}
+
+TEST(Viewshed, CountsObserversAndTellsNeededHeights) {
+  const Wall folder;
+  ASSERT_EQ(run(folder, "viewshed dem.asc -o c.tif --what count --observer 1105,2155,2 --observer 1355,2155,2").code,
+            0);
+  const Raster count = read_raster(folder / "c.tif");
+  EXPECT_EQ(count.at(5, 5), 1);
+  EXPECT_EQ(count.at(20, 5), 2);
+  EXPECT_EQ(count.at(30, 5), 1);
+  ASSERT_EQ(run(folder, "viewshed dem.asc -o h.tif --what height --observer 1105,2155,2").code, 0);
+  // From (10, height 2) over the wall (20, height 50) the line is at 2 + 48 * 20 / 10 at column 30.
+  EXPECT_NEAR(read_raster(folder / "h.tif").at(30, 14), 98, 1e-4);
+}
+
+TEST(Viewshed, SightLineAsJson) {
+  const Wall folder;
+  const Outcome outcome =
+      run(folder, "viewshed dem.asc --observer 1105,2155,2 --to 1305,2155 --frequency 2.4e9 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_FALSE(outcome.json()["visible"].get<bool>());
+  EXPECT_NEAR(outcome.json()["distance"].get<double>(), 200, 1e-9);
+  EXPECT_NEAR(outcome.json()["blocked_at"].get<double>(), 90, 10);
+  EXPECT_EQ(outcome.json()["profile"].size(), 21U);
+  EXPECT_TRUE(
+      run(folder, "viewshed dem.asc --observer 1105,2155,2 --to 1185,2155 --json").json()["visible"].get<bool>());
+}
+
+TEST(Viewshed, IntervisibilityMapAndModels) {
+  const Wall folder;
+  const Outcome outcome = run(folder, "viewshed dem.asc -o i.tif --intervisibility --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Raster map = read_raster(folder / "i.tif");
+  EXPECT_NEAR(map.at(5, 15), 21 * 30, 25);
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 0 --surface linear").code, 0);
+  EXPECT_EQ(run(folder, "viewshed m.retalho -o w.tif --observer 1105,2155,2 --json").json()["visible_cells"], 21 * 30);
+}
+
+TEST(Viewshed, RefusesWhatMakesNoSense) {
+  const Wall folder;
+  EXPECT_EQ(run(folder, "viewshed dem.asc -o v.tif").code, 2);
+  EXPECT_EQ(run(folder, "viewshed dem.asc -o v.tif --observer 1,1").code, 3);
+  EXPECT_EQ(run(folder, "viewshed dem.asc -o v.tif --observer 1105").code, 2);
+  EXPECT_EQ(run(folder, "viewshed dem.asc --observer 1105,2155").code, 2);
+  EXPECT_EQ(run(folder, "viewshed dem.asc -o v.tif --observer 1105,2155 --intervisibility").code, 2);
+  EXPECT_EQ(folder.entries(), 1U);
+}
+
+}  // namespace
+}  // namespace retalho::test
