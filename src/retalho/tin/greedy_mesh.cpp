@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <new>
-#include <stdexcept>
 
 namespace retalho::greedy {
 namespace {
@@ -17,6 +16,10 @@ constexpr int previous(int k) {
 }
 
 }  // namespace
+
+void Cavity::grow() {
+  for (auto* list : {&ring, &outside, &removed, &made, &stack}) list->resize(2 * list->size());
+}
 
 Mesh::Mesh(int columns, int rows, int quarter, const std::vector<Cell>& hull)
     : quarter_(quarter),
@@ -114,8 +117,7 @@ bool Mesh::open_as(std::uint32_t t, Cell p, const Square* within, Cavity& cavity
       cavity.ring[ring] = a;
       cavity.outside[ring++] = link;
     }
-    if (ring + 4 >= Cavity::kRoom || removed + 4 >= Cavity::kRoom || depth + 4 >= Cavity::kRoom)
-      throw std::length_error("an insertion touches more than 16,000 triangles");
+    if (std::max({ring, removed, depth}) + 4 >= cavity.room()) cavity.grow();
   }
   cavity.ring_size = ring;
   cavity.removed_size = removed;
@@ -131,8 +133,8 @@ void Mesh::fill(Cell p, Cavity& cavity) {
   const int corners = made;
   const bool border = cavity.opening >= 0;
   if (border) {  // the fan opens at the border edge that p lies on
-    std::rotate(cavity.ring, cavity.ring + cavity.opening + 1, cavity.ring + corners);
-    std::rotate(cavity.outside, cavity.outside + cavity.opening + 1, cavity.outside + corners);
+    for (auto* list : {&cavity.ring, &cavity.outside})
+      std::rotate(list->begin(), list->begin() + cavity.opening + 1, list->begin() + corners);
     --made;
   }
   const std::size_t quarter =

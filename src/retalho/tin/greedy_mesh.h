@@ -21,16 +21,20 @@ struct Square {
   }
 };
 
-/// Room for one insertion; kept by each worker.
+/// Room for one insertion; kept by each worker. A cavity has a handful of triangles as a rule, but the first ones in
+/// the middle of a large grid with rough sides may have a good part of all those along the sides: the room grows.
 struct Cavity {
-  static constexpr int kRoom = 16384;
-  Cell ring[kRoom];              // the boundary in order: edge i runs from ring[i] to ring[i + 1]
-  std::uint32_t outside[kRoom];  // the link across it
-  std::uint32_t removed[kRoom];
-  std::uint32_t made[kRoom];
-  std::uint32_t stack[kRoom];
+  static constexpr std::size_t kFirstRoom = 64;
+  std::vector<Cell> ring = std::vector<Cell>(kFirstRoom);  // the boundary in order: edge i from ring[i] to ring[i + 1]
+  std::vector<std::uint32_t> outside = std::vector<std::uint32_t>(kFirstRoom);  // the link across it
+  std::vector<std::uint32_t> removed = std::vector<std::uint32_t>(kFirstRoom);
+  std::vector<std::uint32_t> made = std::vector<std::uint32_t>(kFirstRoom);
+  std::vector<std::uint32_t> stack = std::vector<std::uint32_t>(kFirstRoom);
   int ring_size = 0, removed_size = 0, made_size = 0;
   int opening = -1;  // ring edge that the new vertex lies on: a border edge
+
+  int room() const { return static_cast<int>(stack.size()); }
+  void grow();
 };
 
 class Mesh {

@@ -8,6 +8,7 @@
 #include <queue>
 #include <span>
 
+#include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/tin/greedy_heap.h"
 #include "retalho/tin/greedy_mesh.h"
@@ -121,6 +122,7 @@ class Refinement {
       largest = std::max(largest, std::abs(z));
       integers = integers && z == std::floor(z);
     }
+    if (std::isinf(largest)) throw BadInput("the grid holds infinite heights; a void is NaN");
     const int side_bits = std::bit_width(static_cast<unsigned>(std::max(raster_.columns, raster_.rows) - 1));
     exact_ =
         integers && largest < 0x1p49 && std::bit_width(static_cast<std::uint64_t>(largest)) + 1 + 2 * side_bits <= 49;
@@ -151,7 +153,8 @@ class Refinement {
         const Cell worst = worst_on_side(raster_, a, b, options_.max_error);
         if (worst == a) continue;
         insert(id, worst, worker->cavity);
-        pending.insert(pending.end(), worker->cavity.made, worker->cavity.made + worker->cavity.made_size);
+        pending.insert(pending.end(), worker->cavity.made.begin(),
+                       worker->cavity.made.begin() + worker->cavity.made_size);
         break;
       }
     }

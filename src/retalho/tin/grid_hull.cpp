@@ -43,23 +43,26 @@ Cell worst_on_side(const Raster& raster, Cell a, Cell b, double tolerance) {
   const int n = column_of(high) - column_of(low) + row_of(high) - row_of(low);
   const auto height = [&](Cell c) { return raster.at(column_of(c), row_of(c)); };
   const double z0 = height(low), rise = height(high) - z0;
-  double worst = 0;
+  double worst = 0, largest = std::max(std::abs(z0), std::abs(z0 + rise));
   Cell at = a;
   // Integers are compared exactly; elsewhere a hair under the tolerance, so that a checker that rounds differently
-  // agrees. Which it is must follow from this side alone.
+  // agrees, but nothing smaller than rounding. Which it is must follow from this side alone.
   bool integers = z0 == std::floor(z0) && rise == std::floor(rise);
   for (int i = 1; i < n; ++i) {
     const Cell c = cell_at(column_of(low) + dx * i, row_of(low) + dy * i);
     const double z = height(c);
     if (std::isnan(z)) continue;
     integers = integers && z == std::floor(z);
+    largest = std::max(largest, std::abs(z));
     const double error = std::abs((z - z0) * n - rise * i);
     if (error > worst) {
       worst = error;
       at = c;
     }
   }
-  const double limit = (integers ? tolerance : tolerance * (1 - 0x1p-40)) * n;
+  const double rounding = largest * 0x1p-48;
+  const double limit =
+      (integers ? tolerance : std::max(tolerance - std::max(tolerance * 0x1p-40, rounding), rounding)) * n;
   return worst > limit ? at : a;
 }
 

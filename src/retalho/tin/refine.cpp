@@ -1,13 +1,18 @@
 #include "retalho/tin/refine.h"
 
+#include <fmt/format.h>
+
 #include <new>
 
+#include "retalho/core/error.h"
 #include "retalho/tin/greedy_heap.h"
 #include "retalho/tin/greedy_tiles.h"
 
 namespace retalho {
 
 GridTin refine_grid(const Raster& raster, const RefineOptions& options, const Context& context) {
+  if (!(options.max_error >= 0))
+    throw UsageError(fmt::format("the largest error must be 0 or more, not {}", options.max_error), {}, "max_error");
   try {
     return refine_grid_in_tiles(raster, options, context);
   } catch (const std::bad_alloc&) {  // no address space for the tiles' records: the plain way needs less
