@@ -120,12 +120,11 @@ class Refinement {
       if (std::isnan(h)) continue;
       const double z = static_cast<double>(h);
       largest = std::max(largest, std::abs(z));
-      integers = integers && z == std::floor(z);
+      integers = integers && std::abs(z) < 0x1p49 && z == static_cast<double>(static_cast<std::int64_t>(z));
     }
     if (std::isinf(largest)) throw BadInput("the grid holds infinite heights; a void is NaN");
     const int side_bits = std::bit_width(static_cast<unsigned>(std::max(raster_.columns, raster_.rows) - 1));
-    exact_ =
-        integers && largest < 0x1p49 && std::bit_width(static_cast<std::uint64_t>(largest)) + 1 + 2 * side_bits <= 49;
+    exact_ = integers && std::bit_width(static_cast<std::uint64_t>(largest)) + 1 + 2 * side_bits <= 49;
     const double asked = options_.max_error;
     const double rounding = largest * 0x1p-48;
     field_.tolerance = exact_ ? asked : std::max(asked - std::max(asked * 0x1p-40, rounding), rounding);
