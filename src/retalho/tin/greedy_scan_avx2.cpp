@@ -1,17 +1,11 @@
 // Compiled with AVX2 where the compiler has it (src/CMakeLists.txt); called only on machines that have it.
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 
 #include "retalho/tin/greedy_scan.h"
 
 namespace retalho::greedy {
-#ifdef __AVX2__
 #define RETALHO_SCAN_LANES
-#endif
 #include "retalho/tin/greedy_scan.inc"
 
 template <class Height>
