@@ -7,8 +7,8 @@
 #include "retalho/core/error.h"
 #include "retalho/terrain/clough_tocher.h"
 #include "retalho/terrain/gradients.h"
-#include "retalho/terrain/orientation.h"
 #include "retalho/terrain/powell_sabin.h"
+#include "retalho/terrain/side.h"
 
 namespace retalho {
 namespace {
@@ -31,7 +31,7 @@ void check_triangles(const Tin& tin) {
     for (const std::uint32_t k : v)
       if (k >= tin.points.size())
         throw BadInput(fmt::format("triangle {} names vertex {} of {}", t, k, tin.points.size()));
-    if (orientation(tin.points[v[0]], tin.points[v[1]], tin.points[v[2]]) <= 0)
+    if (side_of(tin.points[v[0]], tin.points[v[1]], tin.points[v[2]]) <= 0)
       throw BadInput(
           fmt::format("triangle {} ({}, {}, {}) is not counter-clockwise or has no area", t, v[0], v[1], v[2]));
   }

@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "retalho/core/parallel.h"
-#include "retalho/terrain/orientation.h"
+#include "retalho/terrain/side.h"
 
 namespace retalho {
 namespace {
 
 bool holds(const Corners& c, Vec2 p) {
-  return orientation(c[0], c[1], p) >= 0 && orientation(c[1], c[2], p) >= 0 && orientation(c[2], c[0], p) >= 0;
+  return side_of(c[0], c[1], p) >= 0 && side_of(c[1], c[2], p) >= 0 && side_of(c[2], c[0], p) >= 0;
 }
 
 /// The corner of `triangle` at vertex `v`.
@@ -69,14 +69,14 @@ PointLocator::PointLocator(const Tin& tin, const Context& context) : tin_(tin) {
 std::uint32_t PointLocator::quick_walk(Vec2 p, std::uint32_t& from) const {
   for (int step = 0; step < 64; ++step) {
     const Facet& f = facets_[from];
-    // The three orientations at once, each with the bound of its rounding (orientation.h): one branch in the usual
+    // The three sides at once, each with the bound of its rounding (side.h): one branch in the usual
     // case.
     std::array<double, 3> det, bound;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 a = f.corners[(k + 1) % 3] - p, b = f.corners[(k + 2) % 3] - p;
       const double left = a.x * b.y, right = a.y * b.x;
       det[k] = left - right;
-      bound[k] = kOrientationBound * (std::abs(left) + std::abs(right));
+      bound[k] = kSideBound * (std::abs(left) + std::abs(right));
     }
     if (std::min(det[0] - bound[0], std::min(det[1] - bound[1], det[2] - bound[2])) > 0) return from;
     std::size_t k = det[1] < det[0] ? 1 : 0;
@@ -100,7 +100,7 @@ PointLocator::Step PointLocator::walk(Vec2 p, std::uint32_t from) const {
     for (std::size_t m = 0; m < 3 && !moved; ++m) {
       const std::size_t k = (first + m) % 3;
       if (n[k] != kNone && n[k] == previous) continue;  // it came through this edge: p is on this side
-      const int turn = orientation(c[(k + 1) % 3], c[(k + 2) % 3], p);
+      const int turn = side_of(c[(k + 1) % 3], c[(k + 2) % 3], p);
       on_edge |= turn == 0;
       if (turn >= 0) continue;
       if (n[k] == kNone) {
@@ -134,8 +134,7 @@ std::uint32_t PointLocator::owner(Vec2 p, std::uint32_t triangle) const {
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t across = tin_.neighbors[triangle][k];
-    if (across != kNone && across > best &&
-        orientation(tin_.points[v[(k + 1) % 3]], tin_.points[v[(k + 2) % 3]], p) == 0)
+    if (across != kNone && across > best && side_of(tin_.points[v[(k + 1) % 3]], tin_.points[v[(k + 2) % 3]], p) == 0)
       best = across;
   }
   return best;
@@ -178,7 +177,7 @@ bool PointLocator::outline_is_convex() const {
     const std::uint32_t b = next[a];
     if (b == kNone) return false;
     const std::uint32_t c = next[b];
-    if (c == kNone || orientation(tin_.points[a], tin_.points[b], tin_.points[c]) < 0) return false;
+    if (c == kNone || side_of(tin_.points[a], tin_.points[b], tin_.points[c]) < 0) return false;
     a = b;
     ++seen;
   } while (a != start && seen <= sides);

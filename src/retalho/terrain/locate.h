@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "retalho/core/context.h"
-#include "retalho/terrain/orientation.h"
+#include "retalho/terrain/side.h"
 #include "retalho/tin/tin.h"
 
 namespace retalho {
@@ -44,7 +44,7 @@ class PointLocator {
   /// Does `p` lie inside the triangle, and not on its border? Exact.
   bool holds_inside(std::uint32_t triangle, Vec2 p) const {
     const Corners& c = facets_[triangle].corners;
-    return orientation(c[0], c[1], p) > 0 && orientation(c[1], c[2], p) > 0 && orientation(c[2], c[0], p) > 0;
+    return side_of(c[0], c[1], p) > 0 && side_of(c[1], c[2], p) > 0 && side_of(c[2], c[0], p) > 0;
   }
 
  private:

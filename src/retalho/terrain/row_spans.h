@@ -8,7 +8,7 @@
 
 #include "retalho/core/vec.h"
 #include "retalho/terrain/locate.h"
-#include "retalho/terrain/orientation.h"
+#include "retalho/terrain/side.h"
 
 namespace retalho {
 
@@ -80,7 +80,7 @@ void for_each_row_span(const Corners& corners, const RowGrid& grid, double colum
     const double part = exact - floor;
     if (part > doubt && part < 1 - doubt) return floor + 1;
     const int nearest = part > 0.5 ? floor + 1 : floor;
-    return orientation(s.from, s.to, grid.at(nearest, row)) <= 0 ? nearest : nearest + 1;
+    return side_of(s.from, s.to, grid.at(nearest, row)) <= 0 ? nearest : nearest + 1;
   };
   const auto last_column = [&](const Side& s, double y, int row) {  // at or left of the side
     const double exact = s.start + s.slope * (y - s.from.y);
@@ -88,7 +88,7 @@ void for_each_row_span(const Corners& corners, const RowGrid& grid, double colum
     const double part = exact - floor;
     if (part > doubt && part < 1 - doubt) return floor;
     const int nearest = part > 0.5 ? floor + 1 : floor;
-    return orientation(s.from, s.to, grid.at(nearest, row)) >= 0 ? nearest : nearest - 1;
+    return side_of(s.from, s.to, grid.at(nearest, row)) >= 0 ? nearest : nearest - 1;
   };
   for (int row = rows.last; row >= rows.first; --row) {  // upwards: from the low corner
     const double y = grid.y(row);

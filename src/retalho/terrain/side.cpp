@@ -1,4 +1,4 @@
-#include "retalho/terrain/orientation.h"
+#include "retalho/terrain/side.h"
 
 #include <array>
 #include <cstddef>
@@ -32,7 +32,7 @@ struct Expansion {
 
 }  // namespace
 
-int exact_orientation(Vec2 a, Vec2 b, Vec2 c) {
+int exact_side_of(Vec2 a, Vec2 b, Vec2 c) {
   Expansion sum;
   sum.add_product(a.x, b.y);
   sum.add_product(-a.x, c.y);
