@@ -64,6 +64,7 @@ Curve straight(const FlatCurve& flat, int dimension) {
 
 std::vector<Vec3> lifted(const std::vector<Vec2>& points) {
   std::vector<Vec3> out;
+  out.reserve(points.size());
   for (const Vec2 p : points) out.push_back({p.x, p.y, 0});
   return out;
 }

@@ -67,6 +67,7 @@ TEST(Segment, FindsRandomSimpleRoots) {
   int checked = 0;
   for (int round = 0; round < 5000; ++round) {
     std::vector<double> want;
+    want.reserve(5);
     for (int i = 0; i < 1 + round % 5; ++i) want.push_back(unit(random));
     std::sort(want.begin(), want.end());
     bool apart = true;

@@ -118,6 +118,7 @@ TEST(Curve, HermiteBasisOfSlide15) {
 TEST(Curve, CatmullRomPassesThroughItsPoints) {
   std::mt19937_64 random(5);
   std::vector<Vec3> points;
+  points.reserve(7);
   for (int i = 0; i < 7; ++i) points.push_back(random_point(random));
   for (const double power : {0.0, 0.5, 1.0})
     for (const bool closed : {false, true}) {
@@ -182,6 +183,7 @@ TEST(BSplines, BezierFormInsertionAndRemovalAreExact) {
 TEST(BSplines, UnclampedAndClosed) {
   std::mt19937_64 random(7);
   std::vector<Vec3> points;
+  points.reserve(6);
   for (int i = 0; i < 6; ++i) points.push_back(random_point(random));
   const BSpline s = closed_bspline(points, 3, 3);
   const Curve curve = to_curve(s);

@@ -80,6 +80,7 @@ double runge(double x) {
 
 double lagrange_error(const std::vector<double>& nodes) {
   std::vector<double> y;
+  y.reserve(nodes.size());
   for (const double x : nodes) y.push_back(runge(x));
   const Lagrange p(nodes, y);
   double worst = 0;
@@ -98,6 +99,7 @@ TEST(Interpolate, RungesTable) {
     EXPECT_NEAR(lagrange_error(chebyshev_nodes(row.n, -1, 1)), row.chebyshev, 0.2 * row.chebyshev);
     const std::vector<double> x = uniform_nodes(row.n, -1, 1);
     std::vector<double> y;
+    y.reserve(x.size());
     for (const double v : x) y.push_back(runge(v));
     for (const auto& [ends, want] :
          {std::pair{SplineEnds::natural, row.natural}, std::pair{SplineEnds::not_a_knot, row.not_a_knot}}) {
@@ -116,6 +118,7 @@ TEST(Interpolate, OrdersOfConvergence) {
   const auto error = [&](SplineEnds ends, std::size_t n) {
     const std::vector<double> x = uniform_nodes(n, 0, M_PI);
     std::vector<double> y;
+    y.reserve(x.size());
     for (const double v : x) y.push_back(g(v));
     y.back() = y.front();
     const Curve s = spline_graph(x, y, {ends, slope(0), slope(M_PI)});
@@ -133,6 +136,7 @@ TEST(Interpolate, CurvesPassThroughTheirPointsAndAreC2) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 200; ++round) {
     std::vector<Vec3> points;
+    points.reserve(9);
     for (int i = 0; i < 4 + round % 6; ++i) points.push_back(test::random_point(random));
     for (const bool closed : {false, true})
       for (const Parameters kind : {Parameters::uniform, Parameters::centripetal, Parameters::chord}) {

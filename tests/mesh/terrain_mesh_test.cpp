@@ -18,7 +18,6 @@ namespace retalho {
 namespace {
 
 using test::sample_terrain;
-using test::SampleOptions;
 
 /// A smooth terrain of each kind on jittered points, with random data that no smooth function gives.
 Terrain rough_terrain(SurfaceKind kind, CrossDerivative cross, int columns, int rows, std::uint64_t seed,

@@ -178,7 +178,8 @@ RC_GTEST_PROP(ModelFileProperty, TheModelReadEvaluatesToTheSameBits, ()) {
   const TerrainEvaluator a(saved), b(read);
   std::size_t with_data = 0;
   for (int i = 0; i < 200; ++i) {
-    const Vec2 p{i % 20 * 0.61 - 0.1, 0.1 - i / 20 * 0.93};
+    const int column = i % 20, row = i / 20;
+    const Vec2 p{column * 0.61 - 0.1, 0.1 - row * 0.93};
     const double z = a.value(p);
     RC_ASSERT(std::bit_cast<std::uint64_t>(z) == std::bit_cast<std::uint64_t>(b.value(p)));
     with_data += !std::isnan(z);

@@ -23,7 +23,6 @@ namespace {
 
 using test::largest_allocation;
 using test::sample_terrain;
-using test::SampleOptions;
 
 enum class Outcome { model, refused };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "retalho/core/error.h"
@@ -23,7 +24,7 @@ Raster parse(const std::string& text, std::size_t piece = 1000) {
   return read_pgm(
       [&](char* to, std::size_t size) {
         const std::size_t n = std::min({size, piece, text.size() - at});
-        std::memcpy(to, text.data() + at, n);
+        std::copy_n(text.data() + at, n, to);
         at += n;
         return n;
       },

@@ -386,6 +386,7 @@ TEST_F(ReadRaster, FlippedBytesNeverEndTheProgram) {
 TEST_F(ReadRaster, ManyThreadsAtOnce) {
   const std::string file = make({.values = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}});
   std::vector<std::thread> threads;
+  threads.reserve(8);
   std::atomic<int> good = 0;
   for (int k = 0; k < 8; ++k)
     threads.emplace_back([&] {

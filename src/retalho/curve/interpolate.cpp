@@ -268,6 +268,7 @@ Curve interpolate_points(std::span<const Vec3> points, int dimension, const Poin
   std::vector<Vec3> tangents(p.size());
   const auto run = [&](double Vec3::*part) {
     std::vector<double> y;
+    y.reserve(p.size());
     for (const Vec3& q : p) y.push_back(q.*part);
     const std::vector<double> m = spline_slopes(u, y,
                                                 {.ends = periodic ? SplineEnds::periodic : options.ends,

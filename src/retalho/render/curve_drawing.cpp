@@ -167,6 +167,7 @@ void draw_explicit(PicturePanel& panel, const ExplicitCurve& curve, const Stroke
     // What is far outside of the window is cut off: the picture is clipped, and huge numbers make bad files.
     const double reach = 2 * (curve.high - curve.low);
     std::vector<Vec2> points;
+    points.reserve(line.size());
     for (const Vec2 p : line) points.push_back({p.x, std::clamp(p.y, curve.low - reach, curve.high + reach)});
     panel.paths.push_back({polyline(points), stroke, false});
   }

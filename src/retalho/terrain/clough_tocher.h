@@ -32,14 +32,14 @@ struct CloughTocherElement {
   /// From the whole triangle's coordinates, of a point or of a direction, to the piece's: linear.
   struct Map {
     Map() = default;
-    Map(const CloughTocherElement&, int piece) : k(static_cast<std::size_t>(piece)) {}
+    Map(const CloughTocherElement&, int piece) : k_(static_cast<std::size_t>(piece)) {}
     Barycentric operator()(Barycentric macro) const {
       const std::array<double, 3> u{macro.r, macro.s, macro.t};
-      return {u[(k + 1) % 3] - u[k], u[(k + 2) % 3] - u[k], 3 * u[k]};
+      return {u[(k_ + 1) % 3] - u[k_], u[(k_ + 2) % 3] - u[k_], 3 * u[k_]};
     }
 
    private:
-    std::size_t k = 0;
+    std::size_t k_ = 0;
   };
 
   /// The piece that holds a point.

@@ -44,9 +44,9 @@ struct PowellSabinElement {
     Barycentric operator()(Barycentric macro) const;
 
    private:
-    std::size_t k = 0;
-    bool second_half = false;
-    double per_weight = 0, weight_i = 0, weight_j = 0, per_length = 0, other_length = 0;
+    std::size_t k_ = 0;
+    bool second_half_ = false;
+    double per_weight_ = 0, weight_i_ = 0, weight_j_ = 0, per_length_ = 0, other_length_ = 0;
   };
 
   /// The piece that holds a point.
@@ -83,23 +83,23 @@ inline int PowellSabinElement::piece(Barycentric macro) const {
 }
 
 inline PowellSabinElement::Map::Map(const PowellSabinElement& e, int piece)
-    : k(static_cast<std::size_t>(piece) / 2),
-      second_half(piece % 2 != 0),
-      per_weight(1 / e.weight[k]),
-      weight_i(e.weight[(k + 1) % 3]),
-      weight_j(e.weight[(k + 2) % 3]) {
-  const double length = second_half ? 1 - e.split[k] : e.split[k];
-  per_length = 1 / length;
-  other_length = 1 - length;
+    : k_(static_cast<std::size_t>(piece) / 2),
+      second_half_(piece % 2 != 0),
+      per_weight_(1 / e.weight[k_]),
+      weight_i_(e.weight[(k_ + 1) % 3]),
+      weight_j_(e.weight[(k_ + 2) % 3]) {
+  const double length = second_half_ ? 1 - e.split[k_] : e.split[k_];
+  per_length_ = 1 / length;
+  other_length_ = 1 - length;
 }
 
 inline Barycentric PowellSabinElement::Map::operator()(Barycentric macro) const {
   const std::array<double, 3> u{macro.r, macro.s, macro.t};
-  const double centre_part = u[k] * per_weight;
-  const double ui = u[(k + 1) % 3] - centre_part * weight_i, uj = u[(k + 2) % 3] - centre_part * weight_j;
-  const double part = (second_half ? ui : uj) * per_length;
-  const double corner_part = (second_half ? uj : ui) - part * other_length;
-  if (second_half) return {centre_part, part, corner_part};
+  const double centre_part = u[k_] * per_weight_;
+  const double ui = u[(k_ + 1) % 3] - centre_part * weight_i_, uj = u[(k_ + 2) % 3] - centre_part * weight_j_;
+  const double part = (second_half_ ? ui : uj) * per_length_;
+  const double corner_part = (second_half_ ? uj : ui) - part * other_length_;
+  if (second_half_) return {centre_part, part, corner_part};
   return {centre_part, corner_part, part};
 }
 
