@@ -60,8 +60,8 @@ std::vector<T> read_all(const std::filesystem::path& path) {
 
 /// Runs scipy once and takes its triangulation over.
 Peer run_peer(int points) {
-  char folder[] = "/tmp/bench_terrain_XXXXXX";
-  if (!mkdtemp(folder)) throw std::runtime_error("no temporary folder");
+  std::string folder = (std::filesystem::temp_directory_path() / "bench_terrain_XXXXXX").string();
+  if (!mkdtemp(folder.data())) throw std::runtime_error("no temporary folder");
   const std::string command = fmt::format("/usr/bin/python3 {}/peers/scipy_clough_tocher.py {} {} {}",
                                           RETALHO_BENCH_DIR, points, kSide, folder);
   FILE* pipe = popen(command.c_str(), "r");

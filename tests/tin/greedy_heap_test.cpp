@@ -88,42 +88,32 @@ void check(const Raster& r, const GridTin& tin, double tolerance) {
   for (std::size_t i = 0; i < r.cells(); ++i) ASSERT_TRUE(covered[i] || std::isnan(r.at(i))) << i;
 }
 
-TEST(GreedyHeap, IsDelaunayAndWithinToleranceAtEveryValidCell) {
-  std::mt19937 rng(42);
+/// 300 random grids through one of the two refinements.
+void check_random_grids(GridTin (*refine)(const Raster&, const RefineOptions&, const Context&), unsigned seed) {
+  std::mt19937 rng(seed);
   int refined = 0;
   for (int round = 0; round < 300; ++round) {
     const Raster r = random_grid(rng);
     const double tolerance = std::uniform_int_distribution<int>(0, 8)(rng);
     GridTin tin;
     try {
-      tin = refine_grid_by_heap(r, {.max_error = tolerance});
+      tin = refine(r, {.max_error = tolerance}, {});
     } catch (const BadInput&) {
       continue;
     }
     check(r, tin, tolerance);
-    if (testing::Test::HasFatalFailure()) FAIL() << "round " << round;
+    if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed << ", round " << round;
     refined += tin.cells.size() > 4 ? 1 : 0;
   }
   EXPECT_GT(refined, 150);
 }
 
+TEST(GreedyHeap, IsDelaunayAndWithinToleranceAtEveryValidCell) {
+  check_random_grids(refine_grid_by_heap, 42);
+}
+
 TEST(GreedyTiles, IsDelaunayAndWithinToleranceAtEveryValidCell) {
-  std::mt19937 rng(43);
-  int refined = 0;
-  for (int round = 0; round < 300; ++round) {
-    const Raster r = random_grid(rng);
-    const double tolerance = std::uniform_int_distribution<int>(0, 8)(rng);
-    GridTin tin;
-    try {
-      tin = refine_grid_in_tiles(r, {.max_error = tolerance});
-    } catch (const BadInput&) {
-      continue;
-    }
-    check(r, tin, tolerance);
-    if (testing::Test::HasFatalFailure()) FAIL() << "round " << round;
-    refined += tin.cells.size() > 4 ? 1 : 0;
-  }
-  EXPECT_GT(refined, 150);
+  check_random_grids(refine_grid_in_tiles, 43);
 }
 
 TEST(GreedyHeap, KeepsToABudget) {

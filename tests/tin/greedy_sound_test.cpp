@@ -13,6 +13,7 @@
 #include "retalho/core/error.h"
 #include "retalho/tin/greedy_heap.h"
 #include "retalho/tin/greedy_tiles.h"
+#include "support/grids.h"
 #include "support/support.h"
 
 namespace retalho {
@@ -105,18 +106,6 @@ std::string fault(const Raster& r, const GridTin& tin, double tolerance) {
   return {};
 }
 
-template <class Height>
-Raster make(int columns, int rows, const auto& height) {
-  Raster r;
-  r.columns = columns;
-  r.rows = rows;
-  std::vector<Height> z(r.cells());
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) z[r.index(x, y)] = static_cast<Height>(height(x, y));
-  r.heights = std::move(z);
-  return r;
-}
-
 /// Noise, steps, waves, planes, with voids or without, in float or double.
 Raster any_grid(test::Random& random, int columns, int rows) {
   const std::size_t kind = random.index(5);
@@ -129,7 +118,8 @@ Raster any_grid(test::Random& random, int columns, int rows) {
                                  : 0.1 * x + 0.3 * y * x;
     return random.chance(voids) ? kVoid : z;
   };
-  return random.chance(0.5) ? make<float>(columns, rows, height) : make<double>(columns, rows, height);
+  return random.chance(0.5) ? test::make_grid<float>(columns, rows, height)
+                            : test::make_grid<double>(columns, rows, height);
 }
 
 RC_GTEST_PROP(GreedySound, EveryRandomGridIsTriangulatedRightByBothOrders, ()) {
@@ -163,8 +153,8 @@ RC_GTEST_PROP(GreedySound, GridsThatShareARowAgreeAlongItVoidsOrNot, ()) {
   const Raster north = any_grid(random, columns, above);
   const Raster other = any_grid(random, columns, below);
   // The lower grid has heights of its own; its first row is the upper one's last.
-  const Raster south =
-      make<double>(columns, below, [&](int x, int y) { return y == 0 ? north.at(x, above - 1) : other.at(x, y); });
+  const Raster south = test::make_grid<double>(
+      columns, below, [&](int x, int y) { return y == 0 ? north.at(x, above - 1) : other.at(x, y); });
   const double tolerance = 8 * std::pow(10.0, -*rc::gen::inRange(0, 5));
   GridTin a, b;
   try {
@@ -183,7 +173,7 @@ TEST(GreedySound, LevelsAndTilesKeepDelaunayLinksAndHull) {
   for (const double voids : {0.0, 0.3, 0.7}) {
     for (const double tolerance : {40.0, 8.0, 1.5}) {
       // Over a million cells: rounds instead of the exact start.
-      const Raster r = make<float>(1250, 850, [&](int x, int y) {
+      const Raster r = test::make_grid<float>(1250, 850, [&](int x, int y) {
         const double z = 200 * std::sin(x * 0.011) * std::cos(y * 0.013) + 12 * std::sin(x * 0.2 + y * 0.17);
         return random.chance(voids) || (round % 2 == 1 && x + 2 * y < 700) ? kVoid : z;
       });
@@ -199,7 +189,7 @@ TEST(GreedySound, RoughSidesAroundAFlatMiddleOpenLargeCavities) {
   // All cells of the sides are vertices before the middle is looked at: the first cavity there takes a good part of
   // the triangles along the sides.
   test::Random random;
-  const Raster r = make<float>(900, 800, [&](int x, int y) {
+  const Raster r = test::make_grid<float>(900, 800, [&](int x, int y) {
     const bool side = x == 0 || y == 0 || x == 899 || y == 799;
     return side ? static_cast<double>(random.index(1000)) : x == 450 && y == 400 ? 5000.0 : 0.0;
   });
@@ -209,16 +199,16 @@ TEST(GreedySound, RoughSidesAroundAFlatMiddleOpenLargeCavities) {
 }
 
 TEST(GreedySound, SaysWhichOptionsAndHeightsItRefuses) {
-  const Raster r = make<float>(9, 7, [](int x, int y) { return x * y % 5; });
+  const Raster r = test::make_grid<float>(9, 7, [](int x, int y) { return x * y % 5; });
   EXPECT_THROW(refine_grid(r, {.max_error = -1}), UsageError);
   EXPECT_THROW(refine_grid(r, {.max_error = kVoid}), UsageError);
-  const Raster infinite =
-      make<float>(9, 7, [](int x, int y) { return x == 4 && y == 3 ? std::numeric_limits<double>::infinity() : 0.0; });
+  const Raster infinite = test::make_grid<float>(
+      9, 7, [](int x, int y) { return x == 4 && y == 3 ? std::numeric_limits<double>::infinity() : 0.0; });
   EXPECT_THROW(refine_grid(infinite, {.max_error = 1}), BadInput);
-  EXPECT_THROW(refine_grid(make<float>(1, 1, [](int, int) { return 1; })), BadInput);
-  EXPECT_THROW(refine_grid(make<float>(1, 9, [](int, int) { return 1; })), BadInput);
-  EXPECT_THROW(refine_grid(make<float>(9, 9, [](int x, int y) { return x == y ? 1 : kVoid; })), BadInput);
-  EXPECT_THROW(refine_grid(make<float>(9, 9, [](int, int) { return kVoid; })), BadInput);
+  EXPECT_THROW(refine_grid(test::make_grid<float>(1, 1, [](int, int) { return 1; })), BadInput);
+  EXPECT_THROW(refine_grid(test::make_grid<float>(1, 9, [](int, int) { return 1; })), BadInput);
+  EXPECT_THROW(refine_grid(test::make_grid<float>(9, 9, [](int x, int y) { return x == y ? 1 : kVoid; })), BadInput);
+  EXPECT_THROW(refine_grid(test::make_grid<float>(9, 9, [](int, int) { return kVoid; })), BadInput);
 }
 
 }  // namespace

@@ -12,24 +12,13 @@
 #include "retalho/raster/io.h"
 #include "retalho/tin/greedy_heap.h"
 #include "retalho/tin/greedy_scan.h"
+#include "support/grids.h"
 #include "support/support.h"
 
 namespace retalho {
 namespace {
 
 constexpr double kVoid = std::numeric_limits<double>::quiet_NaN();
-
-template <class Height>
-Raster make(int columns, int rows, const auto& height) {
-  Raster r;
-  r.columns = columns;
-  r.rows = rows;
-  std::vector<Height> z(r.cells());
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) z[r.index(x, y)] = static_cast<Height>(height(x, y));
-  r.heights = std::move(z);
-  return r;
-}
 
 /// Hills over a range of scales, with noise: integers.
 double hills(int x, int y) {
@@ -81,7 +70,8 @@ Checked check(const Raster& r, const GridTin& tin) {
 }
 
 TEST(GreedyTiles, SameBytesFromAnyNumberOfThreads) {
-  const Raster r = make<float>(1300, 900, hills);  // over the size of the exact start: rounds, tiles and the rest
+  const Raster r =
+      test::make_grid<float>(1300, 900, hills);  // over the size of the exact start: rounds, tiles and the rest
   Context one;
   one.threads = 1;
   for (const RefineOptions& options : {RefineOptions{.max_error = 12}, RefineOptions{.vertices = 9000}}) {
@@ -107,7 +97,7 @@ TEST(GreedyTiles, LanesAndScalarsFindTheSameCell) {
   std::size_t found = 0;
   for (int round = 0; round < 3000; ++round) {
     // Few different heights: ties everywhere.
-    const Raster r = make<float>(60, 50, [&](int, int) { return pick(0, 19) == 0 ? kVoid : pick(0, 3); });
+    const Raster r = test::make_grid<float>(60, 50, [&](int, int) { return pick(0, 19) == 0 ? kVoid : pick(0, 3); });
     const auto& z = std::get<std::vector<float>>(r.heights);
     greedy::Record a{};
     for (auto& c : a.corner) c = greedy::cell_at(pick(0, 59), pick(0, 49));
@@ -131,7 +121,7 @@ TEST(GreedyTiles, LanesAndScalarsFindTheSameCell) {
 
 TEST(GreedyTiles, HonoursTheToleranceOnEveryCellTiesIncluded) {
   for (const double tolerance : {40.0, 7.0, 2.0}) {
-    const Raster r = make<float>(1300, 900, hills);
+    const Raster r = test::make_grid<float>(1300, 900, hills);
     const GridTin tin = refine_grid_in_tiles(r, {.max_error = tolerance});
     const Checked c = check(r, tin);
     EXPECT_EQ(c.uncovered, 0U);
@@ -142,7 +132,7 @@ TEST(GreedyTiles, HonoursTheToleranceOnEveryCellTiesIncluded) {
 }
 
 TEST(GreedyTiles, TakesAboutAsManyVerticesAsThePlainOrder) {
-  const Raster r = make<float>(1300, 900, hills);
+  const Raster r = test::make_grid<float>(1300, 900, hills);
   for (const double tolerance : {40.0, 7.0}) {
     const double tiles = static_cast<double>(refine_grid_in_tiles(r, {.max_error = tolerance}).cells.size());
     const double plain = static_cast<double>(refine_grid_by_heap(r, {.max_error = tolerance}).cells.size());
@@ -152,12 +142,12 @@ TEST(GreedyTiles, TakesAboutAsManyVerticesAsThePlainOrder) {
 
 TEST(GreedyTiles, HoldsInDoubleWhereFloatWouldRound) {
   // Heights over 2^24 with steps of one, and fractions of a millimetre at 8,000 m.
-  const Raster large = make<double>(300, 200, [](int x, int y) { return 16777216.0 * 4 + hills(x, y); });
+  const Raster large = test::make_grid<double>(300, 200, [](int x, int y) { return 16777216.0 * 4 + hills(x, y); });
   EXPECT_LE(check(large, refine_grid_in_tiles(large, {.max_error = 1})).worst, 1.0L);
-  const Raster fine = make<double>(200, 150, [](int x, int y) { return 8000 + 1e-4 * hills(x, y); });
+  const Raster fine = test::make_grid<double>(200, 150, [](int x, int y) { return 8000 + 1e-4 * hills(x, y); });
   EXPECT_LE(check(fine, refine_grid_in_tiles(fine, {.max_error = 1e-4})).worst, 1e-4L);
-  const Raster single =
-      make<float>(400, 300, [](int x, int y) { return 1234.567F + 0.013F * static_cast<float>(hills(x, y)); });
+  const Raster single = test::make_grid<float>(
+      400, 300, [](int x, int y) { return 1234.567F + 0.013F * static_cast<float>(hills(x, y)); });
   EXPECT_LE(check(single, refine_grid_in_tiles(single, {.max_error = 0.05})).worst, 0.05L);
 }
 
@@ -166,7 +156,7 @@ TEST(GreedyTiles, VoidsNeverEndTheRefinement) {
   std::size_t degenerate = 0;
   for (int round = 0; round < 30; ++round) {
     const int kind = round % 6;
-    const Raster r = make<float>(220, 170, [&](int x, int y) -> double {
+    const Raster r = test::make_grid<float>(220, 170, [&](int x, int y) -> double {
       const bool corner = (x == 0 || x == 219) && (y == 0 || y == 169);
       const bool border = x == 0 || x == 219 || y == 0 || y == 169;
       const bool gone = kind == 0   ? corner
@@ -186,7 +176,7 @@ TEST(GreedyTiles, VoidsNeverEndTheRefinement) {
 }
 
 TEST(GreedyTiles, MeetsABudgetToTheVertex) {
-  const Raster r = make<float>(1300, 900, hills);
+  const Raster r = test::make_grid<float>(1300, 900, hills);
   for (const std::size_t budget : {4U, 50U, 1000U, 20000U}) {
     const GridTin tin = refine_grid_in_tiles(r, {.vertices = budget});
     EXPECT_EQ(tin.cells.size(), budget);
@@ -209,10 +199,10 @@ std::vector<int> side(const GridTin& tin, bool row, int at) {
 }
 
 TEST(GreedyTiles, GridsThatShareABorderAgreeAlongIt) {
-  const Raster west = make<float>(301, 240, hills),
-               east = make<float>(257, 240, [](int x, int y) { return hills(x + 300, y); });
-  const Raster south =
-      make<float>(301, 200, [](int x, int y) { return hills(x, y + 239) + (y == 0 ? 0 : 40 * std::sin(x * 0.3)); });
+  const Raster west = test::make_grid<float>(301, 240, hills),
+               east = test::make_grid<float>(257, 240, [](int x, int y) { return hills(x + 300, y); });
+  const Raster south = test::make_grid<float>(
+      301, 200, [](int x, int y) { return hills(x, y + 239) + (y == 0 ? 0 : 40 * std::sin(x * 0.3)); });
   for (const double tolerance : {30.0, 6.0, 1.0}) {
     const GridTin a = refine_grid_in_tiles(west, {.max_error = tolerance});
     EXPECT_EQ(side(a, false, 300), side(refine_grid_in_tiles(east, {.max_error = tolerance}), false, 0)) << tolerance;

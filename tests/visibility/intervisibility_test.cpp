@@ -1,5 +1,6 @@
 // The intervisibility map against exact counts, and the properties that it must have.
 #include "retalho/visibility/intervisibility.h"
+#include "support/grids.h"
 
 #include <gtest/gtest.h>
 
@@ -11,19 +12,8 @@
 namespace retalho {
 namespace {
 
-Raster make(int columns, int rows, const auto& height) {
-  Raster r;
-  r.columns = columns;
-  r.rows = rows;
-  std::vector<float> z(r.cells());
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) z[r.index(x, y)] = static_cast<float>(height(x, y));
-  r.heights = std::move(z);
-  return r;
-}
-
 Raster hills(int columns, int rows) {
-  return make(columns, rows, [](int x, int y) {
+  return test::make_grid(columns, rows, [](int x, int y) {
     return 25 * std::sin(x * 0.09 + 0.02 * y) * std::cos(y * 0.07) + 4 * std::sin(x * 0.5) * std::sin(y * 0.41);
   });
 }
@@ -59,15 +49,15 @@ TEST(Intervisibility, IsWithinItsStatedErrorOfExactCounts) {
 }
 
 TEST(Intervisibility, FlatTerrainSeesAll) {
-  const Raster r = make(120, 90, [](int, int) { return 3; });
+  const Raster r = test::make_grid(120, 90, [](int, int) { return 3; });
   for (const float v : intervisibility_map(r, {.directions = 360}))
     EXPECT_NEAR(static_cast<double>(v), 120 * 90, 0.02 * 120 * 90);
 }
 
 TEST(Intervisibility, TurnsAndMirrorsWithTheGrid) {
   const Raster r = hills(70, 50);
-  const Raster mirrored = make(70, 50, [&](int x, int y) { return r.at(69 - x, y); });
-  const Raster turned = make(50, 70, [&](int x, int y) { return r.at(y, x); });
+  const Raster mirrored = test::make_grid(70, 50, [&](int x, int y) { return r.at(69 - x, y); });
+  const Raster turned = test::make_grid(50, 70, [&](int x, int y) { return r.at(y, x); });
   const auto a = intervisibility_map(r), b = intervisibility_map(mirrored), c = intervisibility_map(turned);
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 70; ++x) {
@@ -96,7 +86,7 @@ TEST(Intervisibility, RadiusAndHeightsAreMonotone) {
 }
 
 TEST(Intervisibility, VoidsAreNotSeenAndSeeNothing) {
-  Raster r = make(60, 60, [](int x, int y) {
+  Raster r = test::make_grid(60, 60, [](int x, int y) {
     return x > 20 && x < 40 && y > 20 && y < 40 ? std::numeric_limits<double>::quiet_NaN() : 1.0;
   });
   const auto map = intervisibility_map(r, {.directions = 360});

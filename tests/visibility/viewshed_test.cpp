@@ -9,22 +9,12 @@
 #include <random>
 
 #include "retalho/visibility/line_of_sight.h"
+#include "support/grids.h"
 
 namespace retalho {
 namespace {
 
 constexpr float kVoid = std::numeric_limits<float>::quiet_NaN();
-
-Raster make(int columns, int rows, const auto& height) {
-  Raster r;
-  r.columns = columns;
-  r.rows = rows;
-  std::vector<float> z(r.cells());
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) z[r.index(x, y)] = static_cast<float>(height(x, y));
-  r.heights = std::move(z);
-  return r;
-}
 
 std::vector<std::uint8_t> twin(const Raster& r, const Observer& o, const ViewshedOptions& options) {
   std::vector<std::uint8_t> seen(r.cells(), 0);
@@ -54,7 +44,7 @@ Raster random_terrain(std::mt19937& rng, bool voids) {
   const int columns = pick(1, 40), rows = pick(1, 40), kind = pick(0, 4), range = pick(1, 30);
   const int ax = pick(-3, 3), ay = pick(-3, 3);
   const int void_percent = voids ? pick(1, 70) : 0;
-  return make(columns, rows, [&](int x, int y) -> float {
+  return test::make_grid(columns, rows, [&](int x, int y) -> float {
     if (void_percent > 0 && pick(0, 99) < void_percent) return kVoid;
     switch (kind) {
       case 0:
@@ -101,14 +91,14 @@ TEST(Viewshed, EqualsTheSightLineInEveryCell) {
 
 TEST(Viewshed, FlatTerrainSeesAll) {
   for (const double eye : {0.0, 1.7}) {
-    const Raster r = make(300, 200, [](int, int) { return 7; });
+    const Raster r = test::make_grid(300, 200, [](int, int) { return 7; });
     const auto seen = viewshed(r, {17, 120, eye});
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), 300 * 200) << eye;
   }
 }
 
 TEST(Viewshed, AWallHidesWhatIsBehindIt) {
-  const Raster r = make(21, 21, [](int x, int) { return x == 14 ? 5 : 0; });
+  const Raster r = test::make_grid(21, 21, [](int x, int) { return x == 14 ? 5 : 0; });
   const auto seen = viewshed(r, {10, 10, 1});
   EXPECT_TRUE(seen[r.index(13, 10)]);
   EXPECT_TRUE(seen[r.index(14, 3)]);
@@ -124,7 +114,7 @@ TEST(Viewshed, SeesAsItIsSeenAtEqualHeights) {
   std::mt19937 rng(7);
   std::size_t pairs = 0;
   for (int round = 0; round < 60; ++round) {
-    const Raster r = make(20, 17, [&](int, int) { return std::uniform_int_distribution<int>(0, 12)(rng); });
+    const Raster r = test::make_grid(20, 17, [&](int, int) { return std::uniform_int_distribution<int>(0, 12)(rng); });
     const auto pick = [&](int high) { return std::uniform_int_distribution<int>(0, high)(rng); };
     const int c0 = pick(19), r0 = pick(16), c1 = pick(19), r1 = pick(16);
     const ViewshedOptions options{.target_height = 1.5};
@@ -152,8 +142,9 @@ TEST(Viewshed, GrowsWithObserverHeightAndRadius) {
 
 TEST(Viewshed, TurnsWithTheGrid) {
   std::mt19937 rng(13);
-  const Raster r = make(31, 24, [&](int, int) { return std::uniform_int_distribution<int>(0, 9)(rng); });
-  const Raster turned = make(24, 31, [&](int x, int y) { return r.at(30 - y, x); });  // (c, w) -> (w, 30 - c)
+  const Raster r = test::make_grid(31, 24, [&](int, int) { return std::uniform_int_distribution<int>(0, 9)(rng); });
+  const Raster turned =
+      test::make_grid(24, 31, [&](int x, int y) { return r.at(30 - y, x); });  // (c, w) -> (w, 30 - c)
   const auto a = viewshed(r, {9, 5, 2}), b = viewshed(turned, {5, 30 - 9, 2});
   for (int y = 0; y < r.rows; ++y)
     for (int x = 0; x < r.columns; ++x) ASSERT_EQ(a[r.index(x, y)], b[turned.index(y, 30 - x)]) << x << ' ' << y;
@@ -161,7 +152,7 @@ TEST(Viewshed, TurnsWithTheGrid) {
 
 TEST(Viewshed, SameFromAnyNumberOfThreads) {
   std::mt19937 rng(17);
-  const Raster r = make(200, 180, [&](int x, int y) {
+  const Raster r = test::make_grid(200, 180, [&](int x, int y) {
     return 20 * std::sin(x * 0.1) + 15 * std::cos(y * 0.07) + std::uniform_real_distribution<double>(0, 2)(rng);
   });
   Context one, many;
@@ -172,7 +163,7 @@ TEST(Viewshed, SameFromAnyNumberOfThreads) {
 }
 
 TEST(Viewshed, FieldOfViewIsAMask) {
-  const Raster r = make(41, 41, [](int x, int y) { return (x * 7 + y * 13) % 5; });
+  const Raster r = test::make_grid(41, 41, [](int x, int y) { return (x * 7 + y * 13) % 5; });
   const auto all = viewshed(r, {20, 20, 3});
   const auto north_east = viewshed(r, {20, 20, 3}, {.azimuth_from = 0, .azimuth_to = 90});
   const auto through_north = viewshed(r, {20, 20, 3}, {.azimuth_from = 315, .azimuth_to = 405});
@@ -185,7 +176,7 @@ TEST(Viewshed, FieldOfViewIsAMask) {
 }
 
 TEST(Viewshed, RefusesObserversOffTheData) {
-  const Raster r = make(5, 5, [](int x, int) { return x == 2 ? kVoid : 1; });
+  const Raster r = test::make_grid(5, 5, [](int x, int) { return x == 2 ? kVoid : 1; });
   EXPECT_THROW(viewshed(r, {5, 0, 1}), BadInput);
   EXPECT_THROW(viewshed(r, {2, 0, 1}), BadInput);
   EXPECT_THROW(observer_at(r, {-3, 0}, 1), BadInput);
