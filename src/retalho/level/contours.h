@@ -28,7 +28,7 @@ struct ContourSet {
   std::vector<Vec2> points;        ///< of all lines, one behind the other
   std::vector<ContourLine> lines;  ///< by level, then by where they start
   std::vector<SingularPlace> singular;
-  double tolerance = 0;      ///< every point of a line is this close to the level line, and conversely; local units
+  double tolerance = 0;       ///< every point of a line is this close to the level line, and conversely; local units
   double height_quantum = 0;  ///< heights were rounded to multiples of this before tracing
 };
 

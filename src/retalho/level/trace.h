@@ -1,0 +1,39 @@
+// Internal to level/: what tracing a piece of a surface leaves: points, and which point follows which.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "retalho/core/vec.h"
+#include "retalho/level/contours.h"
+
+namespace retalho {
+
+inline constexpr std::uint32_t kNoPoint = 0xffffffffU;
+
+/// A root of one level on an edge, in lists ordered by level and, within a level, along the edge's own direction.
+struct EdgeRoot {
+  int level;
+  std::uint32_t point;
+};
+
+/// High ground lies to the left of point -> next[point], in local coordinates.
+struct Trace {
+  std::vector<Vec2> points;
+  std::vector<std::uint32_t> next;
+  std::vector<std::int32_t> level;
+  std::vector<std::uint32_t> cell;  ///< the triangle that the point lies in; empty for grids
+  std::vector<SingularPlace> singular;
+  std::size_t pairs = 0, certified = 0, boxes = 0, undecided_edges = 0;
+  int depth = 0;
+
+  std::uint32_t add(Vec2 p, int of_level) {
+    points.push_back(p);
+    next.push_back(kNoPoint);
+    level.push_back(of_level);
+    return static_cast<std::uint32_t>(points.size() - 1);
+  }
+};
+
+}  // namespace retalho

@@ -1,0 +1,152 @@
+// The promises of level/contour.h on bicubic grids.
+#include "retalho/level/contour.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "level/contour_support.h"
+#include "retalho/core/error.h"
+#include "support/errors.h"
+
+namespace retalho {
+namespace {
+
+using test::contour_raster;
+
+Raster noise(test::Random& random, int columns, int rows) {
+  return contour_raster(
+      columns, rows, [&](int, int) { return random.uniform(0, 10); }, 2, 3);
+}
+
+/// Smooth hills: a few waves of random direction.
+Raster hills(test::Random& random, int columns, int rows) {
+  double kx[5], ky[5], phase[5], size[5];
+  for (int i = 0; i < 5; ++i) {
+    kx[i] = random.uniform(-0.6, 0.6);
+    ky[i] = random.uniform(-0.6, 0.6);
+    phase[i] = random.uniform(0, 6.28);
+    size[i] = random.uniform(1, 10);
+  }
+  return contour_raster(columns, rows, [&](int c, int r) {
+    double z = 0;
+    for (int i = 0; i < 5; ++i) z += size[i] * std::sin(kx[i] * c + ky[i] * r + phase[i]);
+    return z;
+  });
+}
+
+double right_of(const Raster& r) {
+  return (r.columns - 1) * r.cell_width;
+}
+double bottom_of(const Raster& r) {
+  return -(r.rows - 1) * r.cell_height;
+}
+
+bool on_border(const Raster& r, Vec2 p) {
+  return p.x == 0 || p.y == 0 || p.x == right_of(r) || p.y == bottom_of(r);
+}
+
+void expect_sound(const Raster& raster, const ContourSet& set) {
+  for (const ContourLine& line : set.lines) {
+    ASSERT_LT(line.begin, line.end);
+    if (line.closed) continue;
+    EXPECT_TRUE(on_border(raster, set.points[line.begin]));
+    EXPECT_TRUE(on_border(raster, set.points[line.end - 1]));
+  }
+  EXPECT_EQ(test::count_meetings(set, raster.cell_width), 0U);
+}
+
+TEST(Contours, LinesAreClosedOrEndOnTheBorder) {
+  test::Random random;
+  for (int round = 0; round < 40; ++round) {
+    const Raster raster = noise(random, 9, 90);
+    const BicubicGrid grid = make_bicubic(raster);
+    ContourStats stats;
+    const ContourSet set =
+        trace_contours(grid, contour_levels(0, 10, 0.73), {.tolerance = 0.1, .simplify = false}, {}, &stats);
+    EXPECT_EQ(set.singular.size(), 0U);
+    expect_sound(raster, set);
+  }
+}
+
+TEST(Contours, ComponentsEqualABruteForceCount) {
+  test::Random random;
+  for (int round = 0; round < 60; ++round) {
+    const Raster raster = round % 2 == 0 ? noise(random, 6, 7) : hills(random, 20, 20);
+    const BicubicGrid grid = make_bicubic(raster);
+    const std::vector<double> levels{1.2345, 3.3321, 5.0171, 7.7177};
+    const ContourSet set = trace_contours(grid, levels, {.tolerance = 0.05, .simplify = false});
+    const int k = round % 2 == 0 ? 96 : 40;
+    const auto columns = static_cast<std::size_t>((raster.columns - 1) * k + 1),
+               rows = static_cast<std::size_t>((raster.rows - 1) * k + 1);
+    std::vector<double> z(columns * rows);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t c = 0; c < columns; ++c) {
+        const Vec2 p{std::min(right_of(raster), static_cast<double>(c) / k * raster.cell_width),
+                     std::max(bottom_of(raster), -static_cast<double>(r) / k * raster.cell_height)};
+        z[r * columns + c] = grid.at(p)->value;
+      }
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      std::vector<char> above(z.size());
+      for (std::size_t i = 0; i < z.size(); ++i) above[i] = z[i] >= levels[l];
+      std::size_t lines = 0;
+      for (const ContourLine& line : set.lines) lines += line.level == static_cast<int>(l);
+      EXPECT_EQ(lines + 1, test::count_regions(above, columns, rows)) << "round " << round << " level " << levels[l];
+    }
+  }
+}
+
+TEST(Contours, ChordsStayWithinTheToleranceAndTheTube) {
+  test::Random random;
+  for (int round = 0; round < 20; ++round) {
+    const Raster raster = round % 2 == 0 ? noise(random, 12, 12) : hills(random, 25, 25);
+    const BicubicGrid grid = make_bicubic(raster);
+    const double step = 0.5, tolerance = 0.05;
+    const ContourSet set =
+        trace_contours(grid, contour_levels(-40, 40, step), {.tolerance = tolerance, .simplify = false});
+    for (const test::Segment& s : test::segments(set)) {
+      for (int i = 0; i <= 4; ++i) {
+        Vec2 p = s.a + (i / 4.0) * (s.b - s.a);
+        p = {std::clamp(p.x, 0.0, right_of(raster)), std::clamp(p.y, bottom_of(raster), 0.0)};
+        const Jet jet = *grid.at(p);
+        const double off = jet.value - set.levels[static_cast<std::size_t>(s.level)];
+        EXPECT_LE(std::abs(off), step / 2);
+      }
+    }
+  }
+}
+
+TEST(Contours, HighGroundLiesToTheLeft) {
+  const Raster raster = contour_raster(12, 9, [](int c, int r) { return -std::hypot(c - 5.3, r - 4.1); });
+  const ContourSet set = trace_contours(make_bicubic(raster), {-2.5}, {.tolerance = 0.01, .simplify = false});
+  ASSERT_EQ(set.lines.size(), 1U);
+  EXPECT_TRUE(set.lines[0].closed);
+  double area = 0;
+  const std::size_t n = set.points.size();
+  for (std::size_t i = 0; i < n; ++i) area += cross(set.points[i], set.points[(i + 1) % n]) / 2;
+  EXPECT_NEAR(area, 3.14159265 * 2.5 * 2.5, 0.2);  // a hill's line runs counter-clockwise
+}
+
+TEST(Contours, TheSameBytesFromAnyNumberOfThreads) {
+  test::Random random;
+  const Raster raster = noise(random, 40, 300);
+  const BicubicGrid grid = make_bicubic(raster);
+  const std::vector<double> levels = contour_levels(0, 10, 0.9);
+  const ContourSet one = trace_contours(grid, levels, {.tolerance = 0.1}, {.threads = 1});
+  const ContourSet many = trace_contours(grid, levels, {.tolerance = 0.1}, {.threads = 3});
+  EXPECT_TRUE(one.points == many.points);
+  EXPECT_EQ(one.lines.size(), many.lines.size());
+}
+
+TEST(Contours, RefusesWhatMakesNoSense) {
+  const Raster raster = contour_raster(4, 4, [](int c, int) { return c; });
+  const BicubicGrid grid = make_bicubic(raster);
+  EXPECT_THROW(trace_contours(grid, {1}, {.tolerance = 0}), BadInput);
+  EXPECT_THROW(trace_contours(grid, {2, 1}, {.tolerance = 1}), BadInput);
+  EXPECT_THROW(trace_contours(grid, {1, 1 + 1e-12}, {.tolerance = 1}), BadInput);
+  EXPECT_THROW(contour_levels(0, 1, 0), BadInput);
+  EXPECT_THROW(contour_levels(0, 1, 1e-9), BadInput);
+}
+
+}  // namespace
+}  // namespace retalho
