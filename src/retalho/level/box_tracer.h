@@ -16,6 +16,7 @@
 
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/frame.h"
+#include "retalho/level/patch_parts.h"
 #include "retalho/level/trace.h"
 
 namespace retalho {
@@ -54,9 +55,9 @@ bool certify(const typename Patch::template Net<I>& net, const Frame& frame, Cer
 template <class Patch>
 class BoxTracer {
  public:
-  /// `tolerance` in local units. Heights in nets are doubled quanta.
-  BoxTracer(const FixedLevels& levels, double tolerance, Trace& trace)
-      : levels_(levels), tolerance_(tolerance), trace_(trace) {}
+  /// `tolerance` in local units. Heights in nets are doubled quanta. `mirrored`: the patches' frames turn clockwise.
+  BoxTracer(const FixedLevels& levels, double tolerance, bool mirrored, Trace& trace)
+      : levels_(levels), tolerance_(tolerance), mirrored_(mirrored), trace_(trace) {}
 
   /// Traces a patch whose sides have these roots. `bits` bounds the ordinates' bits.
   void trace_patch(const typename Patch::template Net<double>& net, const Frame& frame, int bits,
@@ -69,7 +70,6 @@ class BoxTracer {
       pool_.insert(pool_.end(), sides[s].begin(), sides[s].end());
       own[s].end = static_cast<std::uint32_t>(pool_.size());
     }
-    mirrored_ = frame.mirrored();
     Box<double> box{net, frame, 0, 1, bits};
     trace_.pairs += visit(box, 0, levels_.count(), own);
   }
@@ -384,8 +384,8 @@ class BoxTracer {
 
   const FixedLevels& levels_;
   double tolerance_;
+  bool mirrored_;
   Trace& trace_;
-  bool mirrored_ = false;
   std::vector<EdgeRoot> pool_;  ///< the lists of the boxes on the way down, as a stack
   std::vector<EdgeRoot> first_, second_half_;
   std::vector<std::uint32_t> found_;

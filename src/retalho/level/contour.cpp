@@ -9,6 +9,7 @@
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/lines.h"
 #include "retalho/level/trace_grid.h"
+#include "retalho/level/trace_terrain.h"
 
 namespace retalho {
 namespace {
@@ -76,6 +77,26 @@ ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, c
   ContourSet set;
   set.tolerance = options.tolerance;
   set.height_quantum = 1 / fixed.per_unit;
+  set.singular = trace.singular;
+  gather(trace, find_lines(trace), set);
+  set.levels = std::move(levels);
+  context.report("contour", 1);
+  return set;
+}
+
+ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
+                          const Context& context, ContourStats* stats) {
+  check(levels, options);
+  const EdgeTable edges = build_edges(terrain.tin);
+  const double per_unit = terrain_quanta(terrain, edges, context);
+  const FixedLevels fixed_levels(levels, per_unit);
+  context.report("contour", 0);
+  OuterRoots outer;
+  const Trace trace = trace_terrain(terrain, edges, per_unit, fixed_levels, options.tolerance, outer, context);
+  fill(stats, trace);
+  ContourSet set;
+  set.tolerance = options.tolerance;
+  set.height_quantum = 1 / per_unit;
   set.singular = trace.singular;
   gather(trace, find_lines(trace), set);
   set.levels = std::move(levels);

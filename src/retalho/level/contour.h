@@ -38,4 +38,9 @@ std::vector<double> contour_levels(double low, double high, double interval, dou
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context = {}, ContourStats* stats = nullptr);
 
+/// The same on the surface of a terrain model, linear, Powell-Sabin or Clough-Tocher. Where the model's grid has cells
+/// without data the lines end on the border of those cells.
+ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
+                          const Context& context = {}, ContourStats* stats = nullptr);
+
 }  // namespace retalho

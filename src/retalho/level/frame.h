@@ -16,7 +16,6 @@ struct Frame {
     const double det = cross(e1, e2);
     return {cross(d, e2) / det, cross(e1, d) / det};
   }
-  bool mirrored() const { return cross(e1, e2) < 0; }
   /// The parameter direction whose image is the unit vector along the gradient with these parameter derivatives; (0, 0)
   /// for no gradient.
   Vec2 uphill(Vec2 derivatives) const {

@@ -37,7 +37,7 @@ class StripTracer {
         levels_(levels),
         keep_border_(keep_border),
         strip_(strip),
-        boxes_(levels, tolerance, strip.trace),
+        boxes_(levels, tolerance, true, strip.trace),
         low_(static_cast<std::size_t>(grid.columns)),
         high_(low_.size()),
         candidates_(low_.size()) {}

@@ -9,7 +9,7 @@
 #include "retalho/bernstein/triangle.h"
 #include "retalho/level/exact_roots.h"
 #include "retalho/level/frame.h"
-#include "retalho/level/rectangle_patch.h"
+#include "retalho/level/patch_parts.h"
 
 namespace retalho {
 

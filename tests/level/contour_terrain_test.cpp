@@ -1,0 +1,127 @@
+// The promises of level/contour.h on triangulated surfaces: linear, Powell-Sabin, Clough-Tocher.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "level/contour_support.h"
+#include "retalho/level/contour.h"
+#include "retalho/terrain/evaluate.h"
+#include "retalho/terrain/powell_sabin.h"
+#include "terrain/synthetic.h"
+
+namespace retalho {
+namespace {
+
+constexpr SurfaceKind kKinds[] = {SurfaceKind::linear, SurfaceKind::powell_sabin, SurfaceKind::clough_tocher};
+
+/// Random heights, and random gradients of a size that makes every piece hilly.
+Terrain wild(SurfaceKind kind, int side, test::Random& random) {
+  Terrain t;
+  t.kind = kind;
+  t.tin = test::delaunay(test::jittered_points(side, random.seed() + random.index(1000000)),
+                         [&](Vec2) { return random.uniform(0, 10); });
+  if (kind != SurfaceKind::linear)
+    for (std::size_t i = 0; i < t.tin.points.size(); ++i)
+      t.gradients.push_back({random.uniform(-300, 300), random.uniform(-300, 300)});
+  if (kind == SurfaceKind::powell_sabin) t.edge_split = powell_sabin_splits(t.tin, build_edges(t.tin));
+  return t;
+}
+
+TEST(TerrainContours, LinesAreClosedOrEndOnTheBorderAndNeverMeet) {
+  test::Random random;
+  for (const SurfaceKind kind : kKinds)
+    for (int round = 0; round < 12; ++round) {
+      const Terrain t = wild(kind, 8, random);
+      const ContourSet set = trace_contours(t, contour_levels(-20, 30, 0.77), {.tolerance = 0.002, .simplify = false});
+      EXPECT_EQ(set.singular.size(), 0U);
+      EXPECT_GT(set.lines.size(), 0U);
+      for (const ContourLine& line : set.lines) {
+        if (line.closed) continue;
+        for (const Vec2 p : {set.points[line.begin], set.points[line.end - 1]})
+          EXPECT_TRUE(p.x == 0 || p.y == 0 || p.x == 1 || p.y == 1) << p.x << ' ' << p.y;
+      }
+      EXPECT_EQ(test::count_meetings(set, 0.01), 0U);
+    }
+}
+
+TEST(TerrainContours, ComponentsEqualABruteForceCount) {
+  test::Random random;
+  for (const SurfaceKind kind : {SurfaceKind::powell_sabin, SurfaceKind::clough_tocher})
+    for (int round = 0; round < 10; ++round) {
+      const Terrain t = wild(kind, 5, random);
+      const TerrainEvaluator evaluator(t);
+      const std::vector<double> levels{2.123, 5.321, 8.777};
+      const ContourSet set = trace_contours(t, levels, {.tolerance = 0.002, .simplify = false});
+      constexpr std::size_t kSide = 801;
+      std::vector<double> z(kSide * kSide);
+      for (std::size_t r = 0; r < kSide; ++r)
+        for (std::size_t c = 0; c < kSide; ++c)
+          z[r * kSide + c] =
+              evaluator.value({static_cast<double>(c) / (kSide - 1), static_cast<double>(r) / (kSide - 1)});
+      for (std::size_t l = 0; l < levels.size(); ++l) {
+        std::vector<char> above(z.size());
+        for (std::size_t i = 0; i < z.size(); ++i) above[i] = z[i] >= levels[l];
+        std::size_t lines = 0;
+        for (const ContourLine& line : set.lines) lines += line.level == static_cast<int>(l);
+        EXPECT_EQ(lines + 1, test::count_regions(above, kSide, kSide)) << surface_name(kind) << ' ' << round;
+      }
+    }
+}
+
+/// Every region of a linear surface holds a vertex, and vertices of one region are joined by edges.
+TEST(TerrainContours, ComponentsOfALinearSurfaceEqualTheGraphsCount) {
+  test::Random random;
+  for (int round = 0; round < 200; ++round) {
+    const Terrain t = wild(SurfaceKind::linear, 7, random);
+    const ContourSet set = trace_contours(t, {2.123, 5.321, 8.777}, {.tolerance = 0.002, .simplify = false});
+    for (std::size_t l = 0; l < set.levels.size(); ++l) {
+      std::vector<std::size_t> region(t.tin.points.size());
+      for (std::size_t i = 0; i < region.size(); ++i) region[i] = i;
+      const auto above = [&](std::size_t v) { return t.tin.heights[v] >= set.levels[l]; };
+      for (bool changed = true; changed;) {
+        changed = false;
+        for (const auto& triangle : t.tin.triangles)
+          for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t a = triangle[k], b = triangle[(k + 1) % 3];
+            if (above(a) != above(b) || region[a] == region[b]) continue;
+            region[a] = region[b] = std::min(region[a], region[b]);
+            changed = true;
+          }
+      }
+      std::size_t regions = 0, lines = 0;
+      for (std::size_t i = 0; i < region.size(); ++i) regions += region[i] == i;
+      for (const ContourLine& line : set.lines) lines += line.level == static_cast<int>(l);
+      EXPECT_EQ(lines + 1, regions);
+    }
+  }
+}
+
+TEST(TerrainContours, EveryPointIsOnTheLevelWithinTheTube) {
+  test::Random random;
+  for (const SurfaceKind kind : kKinds) {
+    const Terrain t = wild(kind, 8, random);
+    const TerrainEvaluator evaluator(t);
+    const double step = 0.5;
+    const ContourSet set = trace_contours(t, contour_levels(-20, 30, step), {.tolerance = 0.01, .simplify = false});
+    for (const test::Segment& s : test::segments(set))
+      for (int i = 0; i <= 3; ++i) {
+        Vec2 p = s.a + (i / 3.0) * (s.b - s.a);
+        p = {std::clamp(p.x, 0.0, 1.0), std::clamp(p.y, 0.0, 1.0)};
+        EXPECT_LE(std::abs(evaluator.value(p) - set.levels[static_cast<std::size_t>(s.level)]), step / 2);
+      }
+  }
+}
+
+TEST(TerrainContours, TheSameBytesFromAnyNumberOfThreads) {
+  test::Random random;
+  const Terrain t = wild(SurfaceKind::clough_tocher, 60, random);
+  const std::vector<double> levels = contour_levels(0, 10, 1.3);
+  const ContourSet one = trace_contours(t, levels, {.tolerance = 0.001}, {.threads = 1});
+  const ContourSet many = trace_contours(t, levels, {.tolerance = 0.001}, {.threads = 3});
+  EXPECT_TRUE(one.points == many.points);
+  EXPECT_EQ(one.lines.size(), many.lines.size());
+}
+
+}  // namespace
+}  // namespace retalho
