@@ -8,6 +8,7 @@
 #include "retalho/level/fixed_grid.h"
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/lines.h"
+#include "retalho/level/simplify.h"
 #include "retalho/level/trace_grid.h"
 #include "retalho/level/trace_terrain.h"
 
@@ -24,7 +25,8 @@ void check(const std::vector<double>& levels, const ContourOptions& options) {
 }
 
 /// Copies lines out of the trace; of equal consecutive points one stays.
-void gather(const Trace& trace, const std::vector<TracedLine>& lines, ContourSet& set) {
+void gather(const Trace& trace, const std::vector<TracedLine>& lines, RawLines& raw) {
+  ContourSet& set = raw.set;
   std::size_t total = 0;
   for (const TracedLine& line : lines) total += line.count;
   set.points.reserve(total);
@@ -32,11 +34,15 @@ void gather(const Trace& trace, const std::vector<TracedLine>& lines, ContourSet
   for (const TracedLine& line : lines) {
     ContourLine out{line.level, line.closed, set.points.size(), 0};
     std::uint32_t p = line.start;
-    for (std::uint32_t i = 0; i < line.count; ++i, p = trace.next[p])
-      if (set.points.size() == out.begin || !(set.points.back() == trace.points[p]))
-        set.points.push_back(trace.points[p]);
-    if (out.closed && set.points.size() > out.begin + 1 && set.points.back() == set.points[out.begin])
+    for (std::uint32_t i = 0; i < line.count; ++i, p = trace.next[p]) {
+      if (set.points.size() > out.begin && set.points.back() == trace.points[p]) continue;
+      set.points.push_back(trace.points[p]);
+      if (!trace.cell.empty()) raw.cell.push_back(trace.cell[p]);
+    }
+    if (out.closed && set.points.size() > out.begin + 1 && set.points.back() == set.points[out.begin]) {
       set.points.pop_back();
+      if (!trace.cell.empty()) raw.cell.pop_back();
+    }
     out.end = set.points.size();
     set.lines.push_back(out);
   }
@@ -50,6 +56,24 @@ void fill(ContourStats* stats, const Trace& trace) {
   stats->undecided_edges = trace.undecided_edges;
   stats->raw_points = trace.points.size();
   stats->depth = trace.depth;
+}
+
+/// Lines that will be thinned are traced closer than they have to be.
+double raw_tolerance(const ContourOptions& options) {
+  return options.simplify ? options.tolerance / 5 : options.tolerance;
+}
+
+RawLines raw_lines(const Trace& trace, std::vector<double> levels, const ContourOptions& options, double quantum,
+                   ContourStats* stats) {
+  fill(stats, trace);
+  RawLines lines;
+  lines.raw = raw_tolerance(options);
+  lines.set.tolerance = options.tolerance;
+  lines.set.height_quantum = quantum;
+  lines.set.singular = trace.singular;
+  gather(trace, find_lines(trace), lines);
+  lines.set.levels = std::move(levels);
+  return lines;
 }
 
 }  // namespace
@@ -72,16 +96,12 @@ ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, c
   const FixedGrid fixed = fix_grid(grid, context);
   const FixedLevels fixed_levels(levels, fixed.per_unit);
   context.report("contour", 0);
-  const Trace trace = trace_grid(fixed, fixed_levels, options.tolerance, nullptr, context);
-  fill(stats, trace);
-  ContourSet set;
-  set.tolerance = options.tolerance;
-  set.height_quantum = 1 / fixed.per_unit;
-  set.singular = trace.singular;
-  gather(trace, find_lines(trace), set);
-  set.levels = std::move(levels);
+  const double raw = raw_tolerance(options);
+  RawLines lines =
+      raw_lines(trace_grid(fixed, fixed_levels, raw, nullptr, context), levels, options, 1 / fixed.per_unit, stats);
+  if (options.simplify) simplify_lines(lines, fixed, fixed_levels, context);
   context.report("contour", 1);
-  return set;
+  return std::move(lines.set);
 }
 
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
@@ -92,16 +112,12 @@ ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, co
   const FixedLevels fixed_levels(levels, per_unit);
   context.report("contour", 0);
   OuterRoots outer;
-  const Trace trace = trace_terrain(terrain, edges, per_unit, fixed_levels, options.tolerance, outer, context);
-  fill(stats, trace);
-  ContourSet set;
-  set.tolerance = options.tolerance;
-  set.height_quantum = 1 / per_unit;
-  set.singular = trace.singular;
-  gather(trace, find_lines(trace), set);
-  set.levels = std::move(levels);
+  RawLines lines =
+      raw_lines(trace_terrain(terrain, edges, per_unit, fixed_levels, raw_tolerance(options), outer, context), levels,
+                options, 1 / per_unit, stats);
+  if (options.simplify) simplify_lines(lines, terrain, edges, per_unit, fixed_levels, context);
   context.report("contour", 1);
-  return set;
+  return std::move(lines.set);
 }
 
 }  // namespace retalho

@@ -1,0 +1,31 @@
+// Internal to level/: fewer vertices, the topology kept (docs/contours.md, "Simplification").
+//
+// A chord may stand for a stretch of a line when the surface grows across the whole strip that holds the stretch: then
+// each line across the strip meets the level once, so no other part of this level and no vertex of it lies there; and
+// when the chord stays within its level's tube, so that it cannot meet another level's. No search for neighbours.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "retalho/core/context.h"
+#include "retalho/level/contours.h"
+#include "retalho/level/fixed_grid.h"
+#include "retalho/level/fixed_levels.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho {
+
+/// Lines as they were traced: every chord within `raw` of its arc.
+struct RawLines {
+  ContourSet set;
+  std::vector<std::uint32_t> cell;  ///< the triangle of each point; empty for grids
+  double raw = 0;
+};
+
+/// Thins the vertices of `lines`; every line stays within lines.set.tolerance of its level set.
+void simplify_lines(RawLines& lines, const FixedGrid& grid, const FixedLevels& levels, const Context& context);
+void simplify_lines(RawLines& lines, const Terrain& terrain, const EdgeTable& edges, double per_unit,
+                    const FixedLevels& levels, const Context& context);
+
+}  // namespace retalho

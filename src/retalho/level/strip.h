@@ -1,0 +1,78 @@
+// Internal to level/: the narrow rectangle around a chord that holds the arc it stands for.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "retalho/core/vec.h"
+#include "retalho/level/frame.h"
+
+namespace retalho {
+
+struct Strip {
+  Vec2 start, along;  ///< unit vector; uphill is to its left
+  double length = 0;
+  double low = 0, high = 0;  ///< offsets to the left
+
+  Vec2 left() const { return {-along.y, along.x}; }
+
+  /// May a convex polygon touch it? Never wrongly no.
+  template <std::size_t N>
+  bool touches(const std::array<Vec2, N>& corners) const {
+    double a0 = 1e300, a1 = -1e300, b0 = 1e300, b1 = -1e300;
+    for (const Vec2 p : corners) {
+      const double a = dot(p - start, along), b = cross(along, p - start);
+      a0 = std::min(a0, a);
+      a1 = std::max(a1, a);
+      b0 = std::min(b0, b);
+      b1 = std::max(b1, b);
+    }
+    const double slack = 1e-9 * ((a1 - a0) + (b1 - b0) + length);
+    return a0 <= length + slack && a1 >= -slack && b0 <= high + slack && b1 >= low - slack;
+  }
+};
+
+template <class Patch>
+auto frame_corners(const Frame& f) {
+  if constexpr (Patch::kSides == 3)
+    return std::array<Vec2, 3>{f.origin, f.origin + f.e1, f.origin + f.e2};
+  else
+    return std::array<Vec2, 4>{f.origin, f.origin + f.e1, f.origin + f.e1 + f.e2, f.origin + f.e2};
+}
+
+/// Does the polynomial grow along the strip's left everywhere in the part of the patch that the strip may touch?
+/// `steepest`: raised to the largest growth, in ordinates a local unit. The patch is halved `depth` times at most.
+template <class Patch>
+bool grows_across(const typename Patch::template Net<double>& net, const Frame& frame, const Strip& strip, int depth,
+                  double scale, double& steepest) {
+  std::array<double, Patch::kGradients> du{}, dv{};
+  Patch::template gradients<double>(net, du, dv);
+  const Vec2 d = frame.direction(strip.left());
+  double low = 1e300, high = -1e300, size = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Patch::kGradients); ++i) {
+    const double a = d.x * du[i], b = d.y * dv[i];
+    low = std::min(low, a + b);
+    high = std::max(high, a + b);
+    size = std::max(size, std::abs(a) + std::abs(b));
+  }
+  if (low > 1e-12 * size) {
+    steepest = std::max(steepest, Patch::kDegree * high / scale);
+    return true;
+  }
+  if (depth == 0) return false;
+  std::array<typename Patch::template Net<double>, 4> nets;
+  Patch::template split<double>(net, nets);
+  for (int c = 0; c < 4; ++c) {
+    const Frame child = Patch::child_frame(frame, c);
+    if (!strip.touches(frame_corners<Patch>(child))) continue;
+    if (!grows_across<Patch>(nets[static_cast<std::size_t>(c)], child, strip, depth - 1,
+                             scale * (1 << Patch::kBitsADepth), steepest))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace retalho
