@@ -18,6 +18,7 @@ constexpr std::size_t kLeastVertices = 3;
 const std::vector<std::string> kSurfaces{"linear", "powell-sabin", "clough-tocher"};
 const std::vector<std::string> kGradients{"normals", "quadratic", "network"};
 const std::vector<std::string> kCrossDerivatives{"perpendicular", "cubic"};
+const std::vector<std::string> kFits{"interpolate", "least-squares", "z-only"};
 
 }  // namespace
 
@@ -70,6 +71,11 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
       .add_option("--cross-derivative", flags.cross_derivative,
                   "Clough-Tocher, across edges: perpendicular (default) or cubic")
       ->type_name("KIND");
+  command
+      .add_option("--fit", flags.fit,
+                  "Grids: interpolate the vertices (default), least-squares: heights and gradients fitted to every "
+                  "cell, or z-only: heights alone, with gradients that follow from them")
+      ->type_name("KIND");
 }
 
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {
@@ -80,6 +86,24 @@ SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {
   options.cross_derivative =
       static_cast<CrossDerivative>(choose("--cross-derivative", flags.cross_derivative, kCrossDerivatives));
   return options;
+}
+
+FitKind resolve_fit(const SurfaceFlags& flags, bool from_points) {
+  const auto fit = static_cast<FitKind>(choose("--fit", flags.fit, kFits));
+  if (fit == FitKind::interpolate) return fit;
+  if (from_points) throw UsageError("--fit " + flags.fit + " takes grids: survey points are interpolated", {}, "--fit");
+  if (!flags.gradients.empty())
+    throw UsageError("--gradients and --fit " + flags.fit + " exclude each other: the fit sets the gradients", {},
+                     "--gradients");
+  if (flags.cross_derivative != kCrossDerivatives[0])
+    throw UsageError("--fit " + flags.fit + " takes --cross-derivative perpendicular", {}, "--cross-derivative");
+  return fit;
+}
+
+Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context) {
+  Terrain terrain = make_terrain(std::move(tin), raster, surface, context);
+  if (fit == FitKind::interpolate) return terrain;
+  return fit_least_squares(std::move(terrain), raster, {.heights_only = fit == FitKind::z_only}, context);
 }
 
 ModelReport facts_of(const Terrain& terrain) {

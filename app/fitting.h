@@ -8,6 +8,7 @@
 #include "program.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
 
 namespace retalho::app {
@@ -35,12 +36,20 @@ struct SurfaceFlags {
   std::string surface = "clough-tocher";
   std::string gradients;  ///< empty: normals for grids, quadratic for points
   std::string cross_derivative = "perpendicular";
+  std::string fit = "interpolate";
 };
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
 /// Gradients that are not asked for: the vertices of a refined grid are its peaks and pits, where fitted gradients
 /// overshoot and the triangles' normals do not; survey points are not chosen so, and there quadratic is far better.
 /// Throws UsageError with the choices.
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points);
+
+/// How the vertices get their data.
+enum class FitKind : std::uint8_t { interpolate, least_squares, z_only };
+/// Throws UsageError with the choices, and for what does not go together.
+FitKind resolve_fit(const SurfaceFlags& flags, bool from_points);
+/// The surface on a grid's triangulation, fitted as asked for.
+Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context);
 
 /// One model with what is known of it.
 struct ModelReport {

@@ -23,11 +23,19 @@ struct Options {
 
 /// Every kind on the same TIN: the paper's gradients first, then the better ones.
 const std::vector<SurfaceFlags>& kinds() {
-  static const std::vector<SurfaceFlags> all{
-      {"linear", "normals", "perpendicular"},         {"powell-sabin", "normals", "perpendicular"},
-      {"powell-sabin", "quadratic", "perpendicular"}, {"powell-sabin", "network", "perpendicular"},
-      {"clough-tocher", "normals", "perpendicular"},  {"clough-tocher", "quadratic", "perpendicular"},
-      {"clough-tocher", "network", "perpendicular"},  {"clough-tocher", "quadratic", "cubic"}};
+  static const std::vector<SurfaceFlags> all{{"linear", "normals", "perpendicular"},
+                                             {"powell-sabin", "normals", "perpendicular"},
+                                             {"powell-sabin", "quadratic", "perpendicular"},
+                                             {"powell-sabin", "network", "perpendicular"},
+                                             {"clough-tocher", "normals", "perpendicular"},
+                                             {"clough-tocher", "quadratic", "perpendicular"},
+                                             {"clough-tocher", "network", "perpendicular"},
+                                             {"clough-tocher", "quadratic", "cubic"},
+                                             {"linear", "", "perpendicular", "least-squares"},
+                                             {"powell-sabin", "", "perpendicular", "z-only"},
+                                             {"powell-sabin", "", "perpendicular", "least-squares"},
+                                             {"clough-tocher", "", "perpendicular", "z-only"},
+                                             {"clough-tocher", "", "perpendicular", "least-squares"}};
   return all;
 }
 
@@ -38,10 +46,11 @@ std::vector<ModelReport> compare_kinds(const Program& program, const Options& op
   const Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
   std::vector<ModelReport> reports;
   for (const SurfaceFlags& kind : kinds()) {
-    Terrain terrain = make_terrain(tin, raster, resolve(kind, false), context);
+    const FitKind fit = resolve_fit(kind, false);
+    Terrain terrain = make_fitted(tin, raster, resolve(kind, false), fit, context);
     terrain.tolerance = budget.max_error;
     ModelReport report = facts_of(terrain);
-    report.name = kind_text(report);
+    report.name = kind_text(report) + (fit == FitKind::interpolate ? "" : " " + kind.fit);
     report.bytes = encode_model(terrain).size();
     report.errors = assess(terrain, raster, budget.max_error, context);
     reports.push_back(report);

@@ -40,7 +40,7 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   const Stopwatch watch;
   Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
   fit.seconds_triangulation = watch.seconds();
-  fit.terrain = make_terrain(std::move(tin), raster, surface, context);
+  fit.terrain = make_fitted(std::move(tin), raster, surface, resolve_fit(options.surface, false), context);
   fit.terrain.tolerance = budget.max_error;
   fit.errors = assess(fit.terrain, raster, budget.max_error, context);
   return fit;
@@ -106,6 +106,7 @@ std::string report_text(const ModelReport& report, const nlohmann::ordered_json&
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   const SurfaceOptions surface = resolve(options.surface, takes_points(options));
+  resolve_fit(options.surface, takes_points(options));
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
   const Fit fit = takes_points(options) ? fit_points(program, options, surface, context)
@@ -134,6 +135,7 @@ void add_fit(CLI::App& root, Program& program) {
       add_command(root, program, "fit", "An elevation grid or survey points to a terrain model, with its error report",
                   "retalho fit dem.tif -o dem.retalho --max-error 2\n"
                   "retalho fit dem.tif -o flat.retalho --surface linear --ratio 1%\n"
+                  "retalho fit dem.tif -o smooth.retalho --fit least-squares --ratio 1%\n"
                   "retalho fit soundings.xyz -o seabed.retalho --surface powell-sabin\n"
                   "retalho fit survey.gpkg --height-field elevation -o site.retalho --max-error 0.1");
   command->add_option("DEM", options->input, "Elevation grid, or points (.xyz .csv .ply, vector layers)")

@@ -184,6 +184,27 @@ TEST(Models, MeshIsWatertightInEveryFormat) {
   }
 }
 
+TEST(Models, LeastSquaresIsNearerThanInterpolation) {
+  const Folder folder;
+  const auto rmse = [&](const std::string& options) {
+    const Outcome outcome = run(folder, "fit dem.asc -o m.retalho --overwrite --json --vertices 60 " + options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.json()["rmse"].get<double>();
+  };
+  for (const std::string kind : {"--surface linear ", "--surface powell-sabin ", "--surface clough-tocher "}) {
+    const double before = rmse(kind), fitted = rmse(kind + "--fit least-squares"), z_only = rmse(kind + "--fit z-only");
+    EXPECT_LT(fitted, 0.9 * before) << kind;
+    EXPECT_LT(z_only, 0.95 * before) << kind;
+    const Outcome compared = run(folder, "compare dem.asc m.retalho --json");  // read back
+    EXPECT_NEAR(compared.json()["models"][0]["rmse"].get<double>(), z_only, 1e-12);
+  }
+  EXPECT_EQ(run(folder, "fit dem.asc -o n.retalho --fit least-squares --gradients network").code, 2);
+  EXPECT_EQ(run(folder, "fit dem.asc -o n.retalho --fit least-squares --cross-derivative cubic").code, 2);
+  EXPECT_EQ(run(folder, "fit dem.asc -o n.retalho --fit best").code, 2);
+  const Outcome table = run(folder, "compare dem.asc --vertices 60");
+  EXPECT_NE(table.out.find("clough-tocher fitted least-squares"), std::string::npos);
+}
+
 TEST(Models, SurveyPointsBecomeASurfaceToo) {
   const Folder folder;
   std::string points = "x,y,z\n";

@@ -108,7 +108,7 @@ std::string find_fault(const Terrain& terrain, bool neighbors_built) {
   if (terrain.kind < SurfaceKind::linear || terrain.kind > SurfaceKind::clough_tocher)
     return "an unknown kind of surface";
   if (terrain.cross_derivative > CrossDerivative::cubic) return "an unknown rule for cross derivatives";
-  if (terrain.gradient_kind > GradientKind::given) return "an unknown kind of gradients";
+  if (terrain.gradient_kind > GradientKind::fitted) return "an unknown kind of gradients";
   if (!(terrain.tolerance >= 0 && finite(terrain.tolerance))) return "the tolerance is not a number from 0 up";
   for (const auto& fault :
        {georef_fault(terrain.georef), grid_fault(terrain.grid), tin_fault(terrain.tin, neighbors_built)})

@@ -110,8 +110,10 @@ TriangleFrame CloughTocherElement::frame(int piece, const TriangleFrame& macro) 
   return frame;
 }
 
-CloughTocherElement clough_tocher_element(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle) {
-  const TriangleCorners c(terrain, triangle);
+namespace {
+
+/// Everything that stands before the faces.
+CloughTocherElement outer_ordinates(const TriangleCorners& c) {
   CloughTocherElement e;
   e.corner = c.height;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -122,12 +124,33 @@ CloughTocherElement clough_tocher_element(const Terrain& terrain, const EdgeTabl
     const Vec2 to_centroid = ((c.point[i] - c.point[k]) + (c.point[j] - c.point[k])) / 3;
     e.spoke[k] = c.height[k] + dot(c.gradient[k], to_centroid) / 3;
   }
-  if (terrain.cross_derivative == CrossDerivative::cubic)
-    set_cubic_faces(terrain, edges, triangle, c, e);
-  else
-    for (std::size_t k = 0; k < 3; ++k) e.face[k] = perpendicular_face(c, e, k);
+  return e;
+}
+
+void set_perpendicular_faces(const TriangleCorners& c, CloughTocherElement& e) {
+  for (std::size_t k = 0; k < 3; ++k) e.face[k] = perpendicular_face(c, e, k);
+}
+
+void set_inner_ordinates(CloughTocherElement& e) {
   for (std::size_t k = 0; k < 3; ++k) e.inner[k] = (e.spoke[k] + e.face[(k + 1) % 3] + e.face[(k + 2) % 3]) / 3;
   e.centre = (e.inner[0] + e.inner[1] + e.inner[2]) / 3;
+}
+
+}  // namespace
+
+CloughTocherElement clough_tocher_element(const TriangleCorners& corners) {
+  CloughTocherElement e = outer_ordinates(corners);
+  set_perpendicular_faces(corners, e);
+  set_inner_ordinates(e);
+  return e;
+}
+
+CloughTocherElement clough_tocher_element(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle) {
+  const TriangleCorners c(terrain, triangle);
+  if (terrain.cross_derivative != CrossDerivative::cubic) return clough_tocher_element(c);
+  CloughTocherElement e = outer_ordinates(c);
+  set_cubic_faces(terrain, edges, triangle, c, e);
+  set_inner_ordinates(e);
   return e;
 }
 

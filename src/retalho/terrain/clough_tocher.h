@@ -15,6 +15,8 @@
 
 namespace retalho {
 
+struct TriangleCorners;
+
 /// Edge k lies opposite corner k and runs from corner k + 1 to corner k + 2 (indices modulo 3). Piece k is
 /// (corner k + 1, corner k + 2, centroid).
 struct CloughTocherElement {
@@ -54,6 +56,8 @@ struct CloughTocherElement {
 };
 
 CloughTocherElement clough_tocher_element(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle);
+/// With CrossDerivative::perpendicular, which asks nothing of the neighbours.
+CloughTocherElement clough_tocher_element(const TriangleCorners& corners);
 
 /// For CrossDerivative::cubic, once for each edge: 1 where the two triangles are so unlike each other that the cubic
 /// rule would multiply the errors of the gradients, and the perpendicular rule is used instead.

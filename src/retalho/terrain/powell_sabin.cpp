@@ -25,16 +25,19 @@ std::uint32_t apex(const Tin& tin, const EdgeTable& edges, std::uint32_t edge, s
 double split_of(const Tin& tin, const EdgeTable& edges, std::uint32_t edge) {
   const auto [t0, t1] = edges.triangles[edge];
   if (t1 == kNone) return 0.5;
-  const Vec2 a = tin.points[edges.vertices[edge][0]], b = tin.points[edges.vertices[edge][1]];
-  const InscribedCircle c0 = inscribed_circle(a, b, tin.points[apex(tin, edges, edge, t0)]);
-  const InscribedCircle c1 = inscribed_circle(a, b, tin.points[apex(tin, edges, edge, t1)]);
+  return powell_sabin_split(tin.points[edges.vertices[edge][0]], tin.points[edges.vertices[edge][1]],
+                            tin.points[apex(tin, edges, edge, t0)], tin.points[apex(tin, edges, edge, t1)]);
+}
+
+}  // namespace
+
+double powell_sabin_split(Vec2 a, Vec2 b, Vec2 apex, Vec2 other_apex) {
+  const InscribedCircle c0 = inscribed_circle(a, b, apex), c1 = inscribed_circle(a, b, other_apex);
   const double split = (c1.radius * c0.tangent + c0.radius * c1.tangent) / (norm(b - a) * (c0.radius + c1.radius));
   // A convex combination of numbers in (0, 1); only for triangles that are flat to the last digit does rounding leave
   // it.
   return split > 0 && split < 1 ? split : 0.5;
 }
-
-}  // namespace
 
 std::array<double, 3> incentre_weights(Vec2 a, Vec2 b, Vec2 c) {
   const double wa = norm(c - b), wb = norm(a - c), wc = norm(b - a);
@@ -62,7 +65,13 @@ TriangleFrame PowellSabinElement::frame(int piece, const TriangleFrame& macro) c
 }
 
 PowellSabinElement powell_sabin_element(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle) {
-  const TriangleCorners c(terrain, triangle);
+  const auto& sides = edges.of_triangle[triangle];
+  return powell_sabin_element(
+      TriangleCorners(terrain, triangle),
+      {terrain.edge_split[sides[0]], terrain.edge_split[sides[1]], terrain.edge_split[sides[2]]});
+}
+
+PowellSabinElement powell_sabin_element(const TriangleCorners& c, const std::array<double, 3>& splits) {
   PowellSabinElement e;
   e.weight = incentre_weights(c.point[0], c.point[1], c.point[2]);
   e.corner = c.height;
@@ -76,7 +85,7 @@ PowellSabinElement powell_sabin_element(const Terrain& terrain, const EdgeTable&
     const bool forward = c.vertex[low] < c.vertex[high];
     if (!forward) std::swap(low, high);
     // From the lower-index end, whichever side asks: the same bits on both sides of the edge.
-    const double fraction = terrain.edge_split[edges.of_triangle[triangle][k]];
+    const double fraction = splits[k];
     const Vec2 along = c.point[high] - c.point[low];
     const double near_low = c.height[low] + fraction / 2 * dot(c.gradient[low], along);
     const double near_high = c.height[high] - (1 - fraction) / 2 * dot(c.gradient[high], along);

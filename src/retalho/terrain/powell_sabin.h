@@ -15,6 +15,8 @@
 
 namespace retalho {
 
+struct TriangleCorners;
+
 /// Where a point lies inside a split triangle.
 struct PiecePoint {
   int piece = 0;
@@ -61,9 +63,12 @@ struct PowellSabinElement {
 };
 
 PowellSabinElement powell_sabin_element(const Terrain& terrain, const EdgeTable& edges, std::uint32_t triangle);
+/// `splits`: where edge k is cut, from the end with the lower vertex number.
+PowellSabinElement powell_sabin_element(const TriangleCorners& corners, const std::array<double, 3>& splits);
 
 /// The point where the line through the incentres of its two triangles meets each edge, as a fraction from the edge's
 /// lower-index end; 1/2 on the border. Always strictly inside the edge.
+double powell_sabin_split(Vec2 a, Vec2 b, Vec2 apex, Vec2 other_apex);  // an inner edge a-b, one rule for all
 std::vector<double> powell_sabin_splits(const Tin& tin, const EdgeTable& edges, const Context& context = {});
 
 /// Incentre of a triangle in its barycentric coordinates.

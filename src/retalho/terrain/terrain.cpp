@@ -23,11 +23,9 @@ struct GradientRow {
   GradientKind kind;
   const char* name;
 };
-constexpr GradientRow kGradients[] = {{GradientKind::none, "none"},
-                                      {GradientKind::normals, "normals"},
-                                      {GradientKind::quadratic, "quadratic"},
-                                      {GradientKind::network, "network"},
-                                      {GradientKind::given, "given"}};
+constexpr GradientRow kGradients[] = {{GradientKind::none, "none"},           {GradientKind::normals, "normals"},
+                                      {GradientKind::quadratic, "quadratic"}, {GradientKind::network, "network"},
+                                      {GradientKind::given, "given"},         {GradientKind::fitted, "fitted"}};
 
 const SurfaceRow& row(SurfaceKind kind) {
   for (const SurfaceRow& r : kSurfaces)

@@ -21,7 +21,7 @@ enum class CrossDerivative : std::uint8_t {
   perpendicular = 0,  ///< the paper's: linear along the edge, perpendicular to it; quadratics exact
   cubic = 1,          ///< from the two triangles' data; cubics exact, one stored fallback bit an edge
 };
-enum class GradientKind : std::uint8_t { none = 0, normals = 1, quadratic = 2, network = 3, given = 4 };
+enum class GradientKind : std::uint8_t { none = 0, normals = 1, quadratic = 2, network = 3, given = 4, fitted = 5 };
 
 /// The grid that a model was made from: its size, cells and valid cells. Queries outside answer "no data".
 struct GridDomain {

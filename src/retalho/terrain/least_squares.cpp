@@ -1,0 +1,112 @@
+#include "retalho/terrain/least_squares.h"
+
+#include <fmt/format.h>
+
+#include "retalho/core/error.h"
+#include "retalho/core/parallel.h"
+#include "retalho/terrain/fit_system.h"
+#include "retalho/terrain/gradients.h"
+
+namespace retalho {
+namespace {
+
+void check(const Terrain& terrain, const Raster& raster, const LeastSquaresOptions& options) {
+  if (!(options.slope_weight >= 0) || !(options.fairness >= 0) || std::isinf(options.slope_weight) ||
+      std::isinf(options.fairness))
+    throw UsageError(fmt::format("the weights of a fit must be 0 or more, not {} (slopes) and {} (fairness)",
+                                 options.slope_weight, options.fairness));
+  const GridDomain& grid = terrain.grid;
+  if (grid.columns != raster.columns || grid.rows != raster.rows || grid.cell_width != raster.cell_width ||
+      grid.cell_height != raster.cell_height)
+    throw BadInput(fmt::format("a surface on {} x {} cells cannot be fitted to a grid of {} x {}", grid.columns,
+                               grid.rows, raster.columns, raster.rows));
+  if (terrain.kind == SurfaceKind::clough_tocher && terrain.cross_derivative == CrossDerivative::cubic)
+    throw BadInput("the least-squares fit takes Clough-Tocher with the perpendicular cross derivative");
+}
+
+class Fit {
+ public:
+  Fit(Terrain& terrain, const Raster& raster, const LeastSquaresOptions& options, const Context& context)
+      : terrain_(terrain), options_(options), context_(context), grid_(raster, context) {
+    const Tin& tin = terrain.tin;
+    at_.resize(tin.vertex_count());
+    points_.resize(tin.vertex_count());
+    data_.resize(tin.vertex_count());
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      at_[v] = cell_coordinates(tin.points[v], raster);
+      points_[v] = grid_.place(at_[v]);
+      const Vec2 g = terrain.gradients.empty() ? Vec2{} : terrain.gradients[v] * grid_.unit;
+      data_[v] = {tin.heights[v] - grid_.reference, g.x, g.y};
+    }
+    if (terrain.kind != SurfaceKind::linear) {
+      weights_.slope = options.slope_weight;
+      weights_.fairness = options.fairness;
+    }
+    const auto& first = tin.triangles.front();
+    weights_.inside = (at_[first[0]] + at_[first[1]] + at_[first[2]]) / 3;
+    if (terrain.kind == SurfaceKind::powell_sabin) edges_ = build_edges(tin);
+  }
+
+  int run() {
+    const Tin& tin = terrain_.tin;
+    std::vector<FitElement> elements(tin.triangle_count());
+    context_.report("fit", 0);
+    parallel_chunks(elements.size(), 64, context_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        elements[t] = fit_element(terrain_.kind, triangle(static_cast<std::uint32_t>(t)), grid_, weights_);
+    });
+    context_.report("fit", 0.5);
+    FitSolveOptions solve;
+    solve.limits = {options_.tolerance, options_.iterations};
+    solve.heights_only = options_.heights_only;
+    const int iterations = solve_fit(terrain_.kind, tin.triangles, elements, points_, data_, solve, context_);
+    store();
+    context_.report("fit", 1);
+    return iterations;
+  }
+
+ private:
+  FitTriangle triangle(std::uint32_t t) const {
+    FitTriangle result;
+    result.vertex = terrain_.tin.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.at[k] = at_[result.vertex[k]];
+      result.corner[k] = points_[result.vertex[k]];
+      if (terrain_.kind == SurfaceKind::powell_sabin) result.split[k] = terrain_.edge_split[edges_.of_triangle[t][k]];
+    }
+    return result;
+  }
+
+  void store() {
+    for (std::size_t v = 0; v < data_.size(); ++v) terrain_.tin.heights[v] = data_[v].x + grid_.reference;
+    if (terrain_.kind == SurfaceKind::linear) return;
+    if (options_.heights_only) {
+      terrain_.gradients = estimate_gradients(terrain_.tin, build_edges(terrain_.tin), GradientKind::normals, context_);
+      terrain_.gradient_kind = GradientKind::normals;
+      return;
+    }
+    for (std::size_t v = 0; v < data_.size(); ++v) terrain_.gradients[v] = Vec2{data_[v].y, data_[v].z} / grid_.unit;
+    terrain_.gradient_kind = GradientKind::fitted;
+  }
+
+  Terrain& terrain_;
+  const LeastSquaresOptions& options_;
+  const Context& context_;
+  FitGrid grid_;
+  FitWeights weights_;
+  EdgeTable edges_;
+  std::vector<Vec2> at_, points_;
+  std::vector<Vec3> data_;
+};
+
+}  // namespace
+
+Terrain fit_least_squares(Terrain terrain, const Raster& raster, const LeastSquaresOptions& options,
+                          const Context& context, LeastSquaresNotes* notes) {
+  check(terrain, raster, options);
+  const int iterations = Fit(terrain, raster, options, context).run();
+  if (notes) notes->iterations = iterations;
+  return terrain;
+}
+
+}  // namespace retalho
