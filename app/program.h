@@ -61,5 +61,6 @@ void add_mesh(CLI::App& root, Program& program);
 void add_render(CLI::App& root, Program& program);
 void add_curve(CLI::App& root, Program& program);
 void add_viewshed(CLI::App& root, Program& program);
+void add_reconstruct(CLI::App& root, Program& program);
 
 }  // namespace retalho::app

@@ -1,0 +1,114 @@
+// retalho reconstruct: points with normals to a TetraQuad surface.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "inputs.h"
+#include "retalho/core/error.h"
+#include "retalho/mesh/tetraquad_mesh.h"
+#include "retalho/tetraquad/fit.h"
+#include "table.h"
+
+namespace retalho::app {
+namespace {
+
+const std::vector<std::string> kSplits{"five", "kuhn"};
+
+struct Options {
+  std::string points, output, tetrahedra, split = "five";
+  int resolution = 32;
+  double tolerance = 0, smoothness = 1;
+};
+
+void run(const Program& program, const Options& options) {
+  const std::size_t split = choose("--split", options.split, kSplits);
+  if (!std::isfinite(options.tolerance) || options.tolerance < 0)
+    throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
+  check_output(program, options.output, {".ply", ".obj", ".stl", ".glb"}, {options.points});
+  if (!options.tetrahedra.empty())
+    check_output(program, options.tetrahedra, {".vtk"}, {options.points, options.output});
+  const Context context = program.context();
+  const PointCloud cloud = load_points(program, options.points, {}, context);
+  const Stopwatch watch;
+  TetraQuadFitOptions fit;
+  fit.resolution = options.resolution;
+  fit.smoothness = options.smoothness;
+  fit.split = split == 0 ? TetSplit::five : TetSplit::kuhn;
+  TetraQuadFitReport report;
+  const TetraQuad surface = fit_tetraquad(cloud, fit, &report, context);
+  for (const std::string& warning : report.warnings) program.say("warning: " + warning);
+  const TetraQuadField field(surface);
+  TetraQuadMeshNotes notes;
+  const TriangleMesh mesh = mesh_tetraquad(field, {.tolerance = options.tolerance}, &notes, context);
+  const MeshTopology topology = topology_of(mesh);
+  const double seconds = watch.seconds();
+  if (options.tolerance > 0 && notes.deviation > options.tolerance)
+    program.say(
+        fmt::format("warning: the triangles are within {:.3g} of the surface, not {:.3g}: 16 parts an edge are "
+                    "the most",
+                    notes.deviation, options.tolerance));
+  if (topology.open_edges > 0)
+    program.say(fmt::format("the surface is open: {} edges along {} borders", topology.open_edges, topology.borders));
+  context.check();
+  write_mesh(mesh, options.output, program.overwrite);
+  if (!options.tetrahedra.empty()) {
+    std::vector<double> values;
+    for (const Quadric& q : surface.quadrics) values.push_back(q[0] * surface.mesh.step);
+    write_vtk(surface.mesh, values, options.tetrahedra, program.overwrite);
+  }
+  const nlohmann::ordered_json json = {{"points", report.points},
+                                       {"used", report.used},
+                                       {"vertices", report.vertices},
+                                       {"tetrahedra", report.tetrahedra},
+                                       {"crossed", report.crossed},
+                                       {"coefficients", report.coefficients},
+                                       {"step", surface.mesh.step},
+                                       {"components", topology.components},
+                                       {"open_edges", topology.open_edges},
+                                       {"borders", topology.borders},
+                                       {"genus", topology.genus},
+                                       {"residual_mean", report.residual_mean},
+                                       {"residual_99", report.residual_quantile},
+                                       {"residual_max", report.residual_max},
+                                       {"triangles", mesh.triangles.size()},
+                                       {"deviation", notes.deviation},
+                                       {"bytes", std::filesystem::file_size(options.output)},
+                                       {"seconds", seconds},
+                                       {"warnings", report.warnings}};
+  if (program.json) return program.print(json);
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const auto& [key, value] : json.items())
+    if (!value.is_array()) lines.emplace_back(key, value.is_number_float() ? number_text(value) : value.dump());
+  program.print(list_text(lines));
+}
+
+}  // namespace
+
+void add_reconstruct(CLI::App& root, Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(root, program, "reconstruct", "Points with normals to a smooth closed surface",
+                                  "retalho reconstruct scan.ply -o surface.ply\n"
+                                  "retalho reconstruct scan.xyz --resolution 48 -o surface.glb --tolerance 0.01\n"
+                                  "retalho reconstruct noisy.ply --smoothness 10 -o surface.obj --json");
+  command->add_option("POINTS", options->points, "Points with normals: .ply, .xyz, .csv")->required()->type_name("");
+  command->add_option("-o,--output", options->output, "The surface as triangles: .ply, .obj, .stl or .glb")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--resolution", options->resolution, "Cubes along the longest side of the points' box (default 32)")
+      ->type_name("N");
+  command->add_option("--smoothness", options->smoothness, "0.1 for clean points, 10 for noisy ones (default 1)")
+      ->type_name("S");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Largest distance of the triangles to the surface (default: three parts an edge)")
+      ->type_name("T");
+  command->add_option("--split", options->split, "Tetrahedra of a cube: five (default) or kuhn (six)")
+      ->type_name("KIND");
+  command->add_option("--tetrahedra", options->tetrahedra, "Writes the tetrahedra as well, for ParaView: .vtk")
+      ->type_name("FILE");
+  command->callback([options, &program] { run(program, *options); });
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,46 @@
+// The energy that a fitted TetraQuad minimises, as a matrix and a right-hand side. Internal to the room.
+//
+// In lattice coordinates, F = C / step, everything without a dimension:
+//   w sum_k [ F(p_k)^2 + alpha |grad F(p_k) - n_k|^2 ]  +  sum_faces sum_m gamma_m INT [d^m F/dn^m]^2 dA
+//   + mu sum_tets INT |Hess F|^2 dV  +  eps |Q|^2,     w = cells that hold points / points
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "retalho/core/context.h"
+#include "retalho/tetraquad/block_matrix.h"
+#include "retalho/tetraquad/half_faces.h"
+#include "retalho/tetraquad/tet_mesh.h"
+
+namespace retalho {
+
+/// A point in lattice coordinates, in the tetrahedron that holds it.
+struct Sample {
+  std::uint32_t tet = 0;
+  Vec3 place;
+  Vec3 normal;  ///< unit, or zero: not known
+};
+
+struct EnergyWeights {
+  double point = 1;   ///< w
+  double normal = 1;  ///< alpha
+  std::array<double, 3> jump{};
+  double bending = 0;
+  double ridge = 0;  ///< of the mean of the diagonal
+};
+
+struct Energy {
+  BlockMatrix matrix;
+  std::vector<double> right;
+  double ridge = 0;  ///< as added to the diagonal
+};
+
+/// `samples` ascending by tetrahedron. Blocks that depend on a tetrahedron's or a face pair's shape only are made once
+/// a shape. Cost: about 5 us a sample, 3 us a tetrahedron.
+Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, std::span<const Sample> samples,
+                       const EnergyWeights& weights, const Context& context = {});
+
+}  // namespace retalho

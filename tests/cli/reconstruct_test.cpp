@@ -1,0 +1,50 @@
+// The program's reconstruct command, run as a user runs it.
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+#include "tetraquad/shapes.h"
+
+namespace retalho::test {
+namespace {
+
+std::string xyz_of(const PointCloud& cloud) {
+  std::string text;
+  for (std::size_t k = 0; k < cloud.positions.size(); ++k) {
+    const Vec3 p = cloud.positions[k], n = cloud.normals[k];
+    text += fmt::format("{} {} {} {} {} {}\n", p.x, p.y, p.z, n.x, n.y, n.z);
+  }
+  return text;
+}
+
+TEST(Reconstruct, ATorusAsAMeshAndItsReport) {
+  const ScratchFolder folder;
+  folder.put("torus.xyz", xyz_of(torus_points(5000, 7)));
+  const Outcome outcome =
+      run(folder, "reconstruct torus.xyz -o torus.ply --resolution 10 --tetrahedra torus.vtk --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["points"], 5000);
+  EXPECT_EQ(json["components"], 1);
+  EXPECT_EQ(json["open_edges"], 0);
+  EXPECT_EQ(json["genus"], 1);
+  EXPECT_LT(json["residual_mean"].get<double>(), 1e-4);
+  for (const char* key : {"vertices", "tetrahedra", "coefficients", "residual_max", "seconds"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(folder.entries(), 3U);
+}
+
+TEST(Reconstruct, SaysWhatIsWrong) {
+  const ScratchFolder folder;
+  folder.put("torus.xyz", xyz_of(torus_points(500, 7)));
+  folder.put("one.xyz", "1 2 3 0 0 1\n1 2 3 0 0 1\n");
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o torus.foo").code, 2);
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o torus.ply --resolution 1").code, 2);
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o torus.ply --split six").code, 2);
+  EXPECT_EQ(run(folder, "reconstruct one.xyz -o one.ply").code, 3);
+  EXPECT_EQ(run(folder, "reconstruct missing.xyz -o one.ply").code, 4);
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o no/torus.ply").code, 5);
+  EXPECT_EQ(folder.entries(), 2U);
+}
+
+}  // namespace
+}  // namespace retalho::test
