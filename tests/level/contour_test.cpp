@@ -61,9 +61,8 @@ TEST(Contours, LinesAreClosedOrEndOnTheBorder) {
   for (int round = 0; round < 40; ++round) {
     const Raster raster = noise(random, 9, 90);
     const BicubicGrid grid = make_bicubic(raster);
-    ContourStats stats;
     const ContourSet set =
-        trace_contours(grid, contour_levels(0, 10, 0.73), {.tolerance = 0.1, .simplify = round % 2 == 0}, {}, &stats);
+        trace_contours(grid, contour_levels(0, 10, 0.73), {.tolerance = 0.1, .simplify = round % 2 == 0});
     EXPECT_EQ(set.singular.size(), 0U);
     expect_sound(raster, set);
   }

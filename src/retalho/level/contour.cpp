@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/level/bands.h"
+#include "retalho/level/clip.h"
 #include "retalho/level/fixed_grid.h"
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/lines.h"
@@ -45,17 +47,13 @@ void gather(const Trace& trace, const std::vector<TracedLine>& lines, RawLines& 
     }
     out.end = set.points.size();
     set.lines.push_back(out);
+    raw.ends.push_back({line.start, line.stop});
   }
 }
 
-void fill(ContourStats* stats, const Trace& trace) {
-  if (stats == nullptr) return;
-  stats->pairs = trace.pairs;
-  stats->certified = trace.certified;
-  stats->boxes = trace.boxes;
-  stats->undecided_edges = trace.undecided_edges;
-  stats->raw_points = trace.points.size();
-  stats->depth = trace.depth;
+void fill(ContourExtras* extras, const Trace& trace) {
+  if (extras == nullptr) return;
+  extras->stats = {trace.pairs, trace.certified, trace.boxes, trace.undecided_edges, trace.points.size(), trace.depth};
 }
 
 /// Lines that will be thinned are traced closer than they have to be.
@@ -64,8 +62,8 @@ double raw_tolerance(const ContourOptions& options) {
 }
 
 RawLines raw_lines(const Trace& trace, std::vector<double> levels, const ContourOptions& options, double quantum,
-                   ContourStats* stats) {
-  fill(stats, trace);
+                   ContourExtras* extras) {
+  fill(extras, trace);
   RawLines lines;
   lines.raw = raw_tolerance(options);
   lines.set.tolerance = options.tolerance;
@@ -91,31 +89,42 @@ std::vector<double> contour_levels(double low, double high, double interval, dou
 }
 
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
-                          const Context& context, ContourStats* stats) {
+                          const Context& context, ContourExtras* extras) {
   check(levels, options);
   const FixedGrid fixed = fix_grid(grid, context);
   const FixedLevels fixed_levels(levels, fixed.per_unit);
   context.report("contour", 0);
-  const double raw = raw_tolerance(options);
-  RawLines lines =
-      raw_lines(trace_grid(fixed, fixed_levels, raw, nullptr, context), levels, options, 1 / fixed.per_unit, stats);
+  const bool want_bands = extras != nullptr && extras->want_bands;
+  std::vector<BorderEdge> border;
+  Trace trace = trace_grid(fixed, fixed_levels, raw_tolerance(options), want_bands ? &border : nullptr, context);
+  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / fixed.per_unit, extras);
+  if (!want_bands) trace = {};
   if (options.simplify) simplify_lines(lines, fixed, fixed_levels, context);
+  if (want_bands)
+    extras->bands = build_bands(lines.set, lines.ends, grid_border(fixed, fixed_levels, std::move(border), trace));
   context.report("contour", 1);
   return std::move(lines.set);
 }
 
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
-                          const Context& context, ContourStats* stats) {
+                          const Context& context, ContourExtras* extras) {
   check(levels, options);
   const EdgeTable edges = build_edges(terrain.tin);
   const double per_unit = terrain_quanta(terrain, edges, context);
   const FixedLevels fixed_levels(levels, per_unit);
+  const bool want_bands = extras != nullptr && extras->want_bands, voids = has_voids(terrain.grid);
+  if (want_bands && voids)
+    throw BadInput("bands of a model whose grid has cells without data: make them from the grid itself");
   context.report("contour", 0);
   OuterRoots outer;
-  RawLines lines =
-      raw_lines(trace_terrain(terrain, edges, per_unit, fixed_levels, raw_tolerance(options), outer, context), levels,
-                options, 1 / per_unit, stats);
+  Trace trace = trace_terrain(terrain, edges, per_unit, fixed_levels, raw_tolerance(options), outer, context);
+  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / per_unit, extras);
+  if (!want_bands) trace = {};
   if (options.simplify) simplify_lines(lines, terrain, edges, per_unit, fixed_levels, context);
+  if (want_bands)
+    extras->bands =
+        build_bands(lines.set, lines.ends, terrain_border(terrain, edges, per_unit, fixed_levels, outer, trace));
+  if (voids) clip_to_cells(lines.set, terrain.grid);
   context.report("contour", 1);
   return std::move(lines.set);
 }

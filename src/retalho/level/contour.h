@@ -28,6 +28,13 @@ struct ContourStats {
   int depth = 0;  ///< of the deepest box
 };
 
+/// What else a call can give.
+struct ContourExtras {
+  ContourStats stats;
+  bool want_bands = false;
+  BandSet bands;  ///< where asked for
+};
+
 /// Levels from `base` by `interval` that lie in (low, high]. Throws BadInput for an interval that is not positive or
 /// gives more than a million levels.
 std::vector<double> contour_levels(double low, double high, double interval, double base = 0);
@@ -36,11 +43,11 @@ std::vector<double> contour_levels(double low, double high, double interval, dou
 /// levels closer than the surface's quantum. Cost: about 0.1 us a cell and 0.3 us a vertex; 16 bytes a cell and 48 a
 /// vertex. The same bytes from any number of threads.
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
-                          const Context& context = {}, ContourStats* stats = nullptr);
+                          const Context& context = {}, ContourExtras* extras = nullptr);
 
 /// The same on the surface of a terrain model, linear, Powell-Sabin or Clough-Tocher. Where the model's grid has cells
-/// without data the lines end on the border of those cells.
+/// without data the lines end on the border of those cells; bands of such a model are refused (BadInput).
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
-                          const Context& context = {}, ContourStats* stats = nullptr);
+                          const Context& context = {}, ContourExtras* extras = nullptr);
 
 }  // namespace retalho

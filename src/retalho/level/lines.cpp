@@ -12,13 +12,14 @@ std::vector<TracedLine> find_lines(const Trace& trace) {
     if (p != kNoPoint) state[p] = has_predecessor;
   std::vector<TracedLine> lines;
   const auto walk = [&](std::uint32_t start, bool closed) {
-    std::uint32_t count = 0, p = start;
+    std::uint32_t count = 0, p = start, stop = start;
     do {
       state[p] = done;
       ++count;
+      stop = p;
       p = trace.next[p];
     } while (p != kNoPoint && p != start);
-    lines.push_back({trace.level[start], closed, start, count});
+    lines.push_back({trace.level[start], closed, start, stop, count});
   };
   for (std::uint32_t p = 0; p < n; ++p)
     if (state[p] == none && trace.next[p] != kNoPoint) walk(p, false);

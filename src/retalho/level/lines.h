@@ -12,7 +12,7 @@ namespace retalho {
 struct TracedLine {
   int level;
   bool closed;
-  std::uint32_t start;
+  std::uint32_t start, stop;  ///< first and last point
   std::uint32_t count;
 };
 

@@ -5,6 +5,7 @@
 // when the chord stays within its level's tube, so that it cannot meet another level's. No search for neighbours.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace retalho {
 /// Lines as they were traced: every chord within `raw` of its arc.
 struct RawLines {
   ContourSet set;
-  std::vector<std::uint32_t> cell;  ///< the triangle of each point; empty for grids
+  std::vector<std::uint32_t> cell;                 ///< the triangle of each point; empty for grids
+  std::vector<std::array<std::uint32_t, 2>> ends;  ///< of each line: its first and last point in the trace
   double raw = 0;
 };
 
