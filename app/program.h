@@ -60,6 +60,7 @@ void add_sample(CLI::App& root, Program& program);
 void add_mesh(CLI::App& root, Program& program);
 void add_render(CLI::App& root, Program& program);
 void add_curve(CLI::App& root, Program& program);
+void add_patch(CLI::App& root, Program& program);
 void add_viewshed(CLI::App& root, Program& program);
 void add_reconstruct(CLI::App& root, Program& program);
 
