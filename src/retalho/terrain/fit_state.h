@@ -1,0 +1,65 @@
+// A surface in the making on an editable triangulation of cells: the mesh, what its vertices store, and what its
+// triangles add to the least-squares problem. Internal to terrain/.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "retalho/core/context.h"
+#include "retalho/terrain/fit_system.h"
+#include "retalho/tin/cell_mesh.h"
+
+namespace retalho {
+
+struct FitState {
+  SurfaceKind kind;
+  FitGrid grid;
+  CellMesh mesh;
+  std::vector<Vec3> data;            ///< of each vertex, units of the fit
+  std::vector<std::uint8_t> pinned;  ///< of each vertex: its height is its cell's
+  std::vector<FitElement> elements;  ///< of each triangle, up to date after refresh()
+  std::vector<float> cell_weights;   ///< empty: 1
+  FitWeights weights;
+
+  FitState(const Raster& raster, SurfaceKind kind, const Context& context);
+
+  /// The triangle as it is, or with vertex `moved` at cell coordinates `to`.
+  FitTriangle triangle(std::uint32_t t, std::uint32_t moved = kNone, Vec2 to = {}) const;
+  CornerData corner_data(std::uint32_t t) const;
+  double height(CellMesh::Cell cell) const { return grid.z[grid.cell(greedy::column_of(cell), greedy::row_of(cell))]; }
+
+  /// Elements of the triangles that have changed since the last time; all of them where `all`.
+  void refresh(const Context& context, bool all = false);
+  /// Solves for all vertices from where they are.
+  int solve(const CgLimits& limits, const Context& context);
+  /// The objective.
+  double cost(const Context& context) const;
+  std::vector<double> costs(const Context& context) const;
+
+  /// Height and gradient of the surface at a cell of triangle `t`, units of the fit.
+  Vec3 surface_at(std::uint32_t t, CellMesh::Cell cell) const;
+  /// A new vertex with the data of the surface there; false where there is none to be had.
+  bool insert(CellMesh::Cell cell, std::uint32_t t, Vec3 at);
+  bool remove(std::uint32_t vertex);
+};
+
+/// What can be put back.
+struct FitSnapshot {
+  CellMesh mesh;
+  std::vector<Vec3> data;
+  std::vector<std::uint8_t> pinned;
+  std::vector<FitElement> elements;
+
+  explicit FitSnapshot(const FitState& s) : mesh(s.mesh), data(s.data), pinned(s.pinned), elements(s.elements) {}
+  void restore(FitState& s) const {
+    s.mesh = mesh;
+    s.data = data;
+    s.pinned = pinned;
+    s.elements = elements;
+  }
+};
+
+/// The terrain that the state is.
+Terrain to_terrain(const FitState& state, const Raster& raster, const Context& context);
+
+}  // namespace retalho

@@ -1,0 +1,186 @@
+// Relocation of vertices (fit_moves.h).
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "retalho/core/parallel.h"
+#include "retalho/terrain/fit_moves.h"
+
+namespace retalho {
+namespace {
+
+using greedy::Cell;
+
+constexpr double kLeastArea = 1.4;       // cells
+constexpr double kLeastFullness = 0.05;  // area over the square of the longest side
+
+/// What a star costs when its vertex's data are the best for it.
+struct Trial {
+  double cost = INFINITY;
+  Vec3 data;
+  std::vector<FitElement> elements;
+};
+
+Trial try_star(const FitState& s, std::uint32_t vertex, const std::vector<std::uint32_t>& triangles, Vec2 at,
+               bool as_is) {
+  const bool flat = s.kind == SurfaceKind::linear;
+  const std::size_t per = flat ? 1 : 3;
+  Trial trial;
+  trial.cost = 0;
+  Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * (flat ? 1.0 : 0.0);
+  a(0, 0) = 0;
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (const std::uint32_t t : triangles) {
+    trial.elements.push_back(as_is ? s.elements[t] : fit_element(s.kind, s.triangle(t, vertex, at), s.grid, s.weights));
+    const FitElement& e = trial.elements.back();
+    const auto& v = s.mesh.triangles()[t];
+    const std::size_t me = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
+    CornerData rest = s.corner_data(t);
+    rest[me] = {};
+    trial.cost += element_cost(s.kind, e, rest);
+    for (std::size_t i = 0; i < per; ++i) {
+      const std::size_t row = me * per + i;
+      double right = e.b[row];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::array<double, 3> u{rest[k].x, rest[k].y, rest[k].z};
+        for (std::size_t j = 0; j < per; ++j) {
+          const std::size_t column = k * per + j;
+          const double entry = e.a[packed_index(std::min(row, column), std::max(row, column))];
+          if (k == me)
+            a(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += entry;
+          else
+            right -= entry * u[j];
+        }
+      }
+      b(static_cast<Eigen::Index>(i)) += right;
+    }
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> factors(a);
+  const Eigen::Vector3d u = factors.solve(b);
+  if (factors.info() != Eigen::Success || !u.allFinite() || !factors.isPositive()) return {};
+  trial.cost -= b.dot(u);
+  trial.data = {u(0), u(1), u(2)};
+  return trial;
+}
+
+struct Move {
+  bool wanted = false;
+  Cell to = 0;
+  Vec3 data;
+  std::vector<FitElement> elements;
+};
+
+class Sweep {
+ public:
+  Sweep(FitState& state, double reach) : state_(state), reach_(reach) {}
+
+  /// How many vertices have moved.
+  std::size_t run(const Context& context) {
+    std::size_t moved = 0;
+    for (const auto& color : colors(context)) {
+      std::vector<Move> moves(color.size());
+      parallel_chunks(color.size(), 4, context, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) moves[k] = best_move(color[k]);
+      });
+      for (std::size_t k = 0; k < color.size(); ++k) {
+        if (!moves[k].wanted) continue;
+        ++moved;
+        state_.mesh.displace(color[k], moves[k].to);
+        state_.data[color[k]] = moves[k].data;
+        CellMesh::Star star;
+        state_.mesh.star(color[k], star);
+        for (std::size_t i = 0; i < star.triangles.size(); ++i)
+          state_.elements[star.triangles[i]] = moves[k].elements[i];
+      }
+    }
+    return moved;
+  }
+
+ private:
+  /// Vertices that are no neighbours of each other, so that their stars share no triangle.
+  std::vector<std::vector<std::uint32_t>> colors(const Context& context) const {
+    const std::size_t n = state_.mesh.vertex_count();
+    const FitPattern pattern(state_.mesh.triangles(), n, context);
+    std::vector<std::uint32_t> color(n, kNone);
+    std::vector<std::vector<std::uint32_t>> result;
+    std::vector<std::uint8_t> taken;
+    for (std::uint32_t v = 0; v < n; ++v) {
+      taken.assign(result.size() + 1, 0);
+      for (std::uint32_t k = pattern.begin[v]; k < pattern.begin[v + 1]; ++k)
+        if (const std::uint32_t c = color[pattern.vertex[k]]; c != kNone) taken[c] = 1;
+      const auto c = static_cast<std::size_t>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
+      if (c == result.size()) result.emplace_back();
+      color[v] = static_cast<std::uint32_t>(c);
+      result[c].push_back(v);
+    }
+    return result;
+  }
+
+  Move best_move(std::uint32_t v) const {
+    const CellMesh& mesh = state_.mesh;
+    Move move;
+    if (state_.pinned[v] != 0) return move;
+    CellMesh::Star star;
+    mesh.star(v, star);
+    double area = 0;
+    for (const std::uint32_t t : star.triangles) area += area_of(state_.triangle(t));
+    const Trial now = try_star(state_, v, star.triangles, mesh.at(v), true);
+    double best = now.cost * (1 - 1e-6);
+    if (!(best > 0)) return move;
+    const double step = reach_ * std::sqrt(area / 3);
+    const Cell here = mesh.cell(v);
+    std::vector<Cell> tried{here};
+    for (int direction = 0; direction < 8; ++direction) {
+      const double angle = direction * (std::numbers::pi / 4);
+      const auto column = greedy::column_of(here) + std::lround(step / state_.grid.step.x * std::cos(angle)),
+                 row = greedy::row_of(here) + std::lround(step / state_.grid.step.y * std::sin(angle));
+      if (column < 0 || row < 0 || column >= state_.grid.columns || row >= state_.grid.rows) continue;
+      const Cell to = greedy::cell_at(static_cast<int>(column), static_cast<int>(row));
+      if (std::find(tried.begin(), tried.end(), to) != tried.end()) continue;
+      tried.push_back(to);
+      if (std::isnan(state_.height(to)) || !mesh.can_move(v, to)) continue;
+      const Vec2 at{static_cast<double>(column), -static_cast<double>(row)};
+      if (!sound(v, star.triangles, at)) continue;
+      Trial trial = try_star(state_, v, star.triangles, at, false);
+      if (!(trial.cost < best)) continue;
+      best = trial.cost;
+      move = {true, to, trial.data, std::move(trial.elements)};
+    }
+    return move;
+  }
+
+  static double area_of(const FitTriangle& t) {
+    return cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]) / 2;
+  }
+
+  bool sound(std::uint32_t v, const std::vector<std::uint32_t>& triangles, Vec2 at) const {
+    return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+      const FitTriangle triangle = state_.triangle(t, v, at);
+      const auto& c = triangle.corner;
+      const double area = area_of(triangle);
+      const double longest = std::max({norm2(c[1] - c[0]), norm2(c[2] - c[1]), norm2(c[0] - c[2])});
+      return area >= kLeastArea && area >= kLeastFullness * longest;
+    });
+  }
+
+  FitState& state_;
+  double reach_;
+};
+
+}  // namespace
+
+bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context) {
+  const FitSnapshot before(state);
+  const double cost_before = state.cost(context);
+  if (Sweep(state, reach).run(context) == 0) return false;
+  state.mesh.restore();
+  state.refresh(context);
+  state.solve(limits, context);
+  if (state.cost(context) < cost_before) return true;
+  before.restore(state);
+  return false;
+}
+
+}  // namespace retalho

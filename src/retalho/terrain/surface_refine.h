@@ -1,0 +1,29 @@
+// Refinement of a grid's surface by the surface's own error: the vertices are chosen for the smooth surface itself, not
+// for the flat triangulation under it (docs/algorithms/smooth-fit.md).
+#pragma once
+
+#include <cstddef>
+
+#include "retalho/core/context.h"
+#include "retalho/raster/raster.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho {
+
+struct SurfaceRefineOptions {
+  SurfaceKind surface = SurfaceKind::clough_tocher;
+  std::size_t vertices = 0;   ///< the budget; at least the corners of the valid cells' hull are vertices
+  int relocations = 3;        ///< sweeps of relocation after the last vertex
+  int exchanges = 5;          ///< rounds of removal and re-insertion, each followed by a relocation
+  double growth = 0.25;       ///< of the number of vertices a round
+  double slope_weight = 0.1;  ///< as in LeastSquaresOptions
+  double fairness = 1e-3;
+};
+
+/// Vertices are cells, inserted at the centroids of the squared errors, moved, removed and inserted elsewhere; heights
+/// and gradients of all are fitted to all valid cells after each step, and no step that makes the objective larger is
+/// kept. The triangulation is Delaunay in cell coordinates. The same result from any number of threads. Throws BadInput
+/// as refine_grid, UsageError for options out of range, Interrupted.
+Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context = {});
+
+}  // namespace retalho
