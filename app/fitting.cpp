@@ -19,6 +19,7 @@ const std::vector<std::string> kSurfaces{"linear", "powell-sabin", "clough-toche
 const std::vector<std::string> kGradients{"normals", "quadratic", "network"};
 const std::vector<std::string> kCrossDerivatives{"perpendicular", "cubic"};
 const std::vector<std::string> kFits{"interpolate", "least-squares", "z-only"};
+const std::vector<std::string> kRefinements{"flat", "surface"};
 
 }  // namespace
 
@@ -76,6 +77,12 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
                   "Grids: interpolate the vertices (default), least-squares: heights and gradients fitted to every "
                   "cell, or z-only: heights alone, with gradients that follow from them")
       ->type_name("KIND");
+  command
+      .add_option(
+          "--refine", flags.refine,
+          "Grids: vertices chosen for the flat triangulation (default), or surface: for the surface itself, with "
+          "heights and gradients fitted to every cell")
+      ->type_name("KIND");
 }
 
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {
@@ -98,6 +105,17 @@ FitKind resolve_fit(const SurfaceFlags& flags, bool from_points) {
   if (flags.cross_derivative != kCrossDerivatives[0])
     throw UsageError("--fit " + flags.fit + " takes --cross-derivative perpendicular", {}, "--cross-derivative");
   return fit;
+}
+
+bool refines_surface(const SurfaceFlags& flags, bool from_points) {
+  if (choose("--refine", flags.refine, kRefinements) == 0) return false;
+  if (from_points) throw UsageError("--refine surface takes grids", {}, "--refine");
+  SurfaceFlags fitted = flags;
+  fitted.fit = kFits[1];
+  resolve_fit(fitted, from_points);
+  if (flags.fit == kFits[2])
+    throw UsageError("--refine surface fits heights and gradients: --fit z-only needs --refine flat", {}, "--fit");
+  return true;
 }
 
 Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context) {

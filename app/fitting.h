@@ -37,6 +37,7 @@ struct SurfaceFlags {
   std::string gradients;  ///< empty: normals for grids, quadratic for points
   std::string cross_derivative = "perpendicular";
   std::string fit = "interpolate";
+  std::string refine = "flat";
 };
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
 /// Gradients that are not asked for: the vertices of a refined grid are its peaks and pits, where fitted gradients
@@ -48,6 +49,8 @@ SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points);
 enum class FitKind : std::uint8_t { interpolate, least_squares, z_only };
 /// Throws UsageError with the choices, and for what does not go together.
 FitKind resolve_fit(const SurfaceFlags& flags, bool from_points);
+/// --refine surface: the vertices are chosen by the surface's own error. Throws as resolve_fit.
+bool refines_surface(const SurfaceFlags& flags, bool from_points);
 /// The surface on a grid's triangulation, fitted as asked for.
 Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context);
 

@@ -9,6 +9,7 @@
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/terrain/point_report.h"
+#include "retalho/terrain/surface_refine.h"
 #include "retalho/tin/refine.h"
 #include "retalho/tin/scattered.h"
 #include "table.h"
@@ -38,9 +39,14 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   const Budget budget = resolve(program, options.budget, summary.valid, range);
   Fit fit;
   const Stopwatch watch;
-  Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
-  fit.seconds_triangulation = watch.seconds();
-  fit.terrain = make_fitted(std::move(tin), raster, surface, resolve_fit(options.surface, false), context);
+  if (refines_surface(options.surface, false)) {
+    fit.terrain = refine_surface(raster, {.surface = surface.surface, .vertices = budget.vertices}, context);
+    fit.seconds_triangulation = watch.seconds();
+  } else {
+    Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
+    fit.seconds_triangulation = watch.seconds();
+    fit.terrain = make_fitted(std::move(tin), raster, surface, resolve_fit(options.surface, false), context);
+  }
   fit.terrain.tolerance = budget.max_error;
   fit.errors = assess(fit.terrain, raster, budget.max_error, context);
   return fit;
@@ -107,6 +113,9 @@ void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   const SurfaceOptions surface = resolve(options.surface, takes_points(options));
   resolve_fit(options.surface, takes_points(options));
+  if (refines_surface(options.surface, takes_points(options)) && options.budget.vertices == std::nullopt &&
+      options.budget.ratio.empty())
+    throw UsageError("--refine surface needs --vertices or --ratio", {}, "--refine");
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
   const Fit fit = takes_points(options) ? fit_points(program, options, surface, context)
@@ -135,7 +144,7 @@ void add_fit(CLI::App& root, Program& program) {
       add_command(root, program, "fit", "An elevation grid or survey points to a terrain model, with its error report",
                   "retalho fit dem.tif -o dem.retalho --max-error 2\n"
                   "retalho fit dem.tif -o flat.retalho --surface linear --ratio 1%\n"
-                  "retalho fit dem.tif -o smooth.retalho --fit least-squares --ratio 1%\n"
+                  "retalho fit dem.tif -o smooth.retalho --refine surface --ratio 1%\n"
                   "retalho fit soundings.xyz -o seabed.retalho --surface powell-sabin\n"
                   "retalho fit survey.gpkg --height-field elevation -o site.retalho --max-error 0.1");
   command->add_option("DEM", options->input, "Elevation grid, or points (.xyz .csv .ply, vector layers)")

@@ -205,6 +205,19 @@ TEST(Models, LeastSquaresIsNearerThanInterpolation) {
   EXPECT_NE(table.out.find("clough-tocher fitted least-squares"), std::string::npos);
 }
 
+TEST(Models, RefinementBySurfaceIsNearerStill) {
+  const Folder folder;
+  const Outcome fitted = run(folder, "fit dem.asc -o a.retalho --json --vertices 60 --fit least-squares");
+  const Outcome refined = run(folder, "fit dem.asc -o b.retalho --json --vertices 60 --refine surface");
+  ASSERT_EQ(refined.code, 0) << refined.err;
+  EXPECT_EQ(refined.json()["vertices"], 60);
+  EXPECT_LT(refined.json()["rmse"].get<double>(), fitted.json()["rmse"].get<double>());
+  EXPECT_EQ(refined.json()["uncovered"], 0);
+  EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --vertices 60 --refine surface --fit z-only").code, 2);
+  EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --vertices 60 --refine other").code, 2);
+  EXPECT_EQ(run(folder, "mesh b.retalho -o b.ply").code, 0);
+}
+
 TEST(Models, SurveyPointsBecomeASurfaceToo) {
   const Folder folder;
   std::string points = "x,y,z\n";

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "retalho/tin/grid_hull.h"
 #include "support/grids.h"
 #include "support/support.h"
 
@@ -67,7 +68,7 @@ TEST(CellMesh, StaysDelaunayUnderAnyEdits) {
       const Raster raster = test::make_grid(side, side - 1, [&](int x, int y) {
         return voids && (x + y < side / 2 || x - 2 * y > side / 2) ? std::nanf("") : 1.0F;
       });
-      CellMesh mesh(raster);
+      CellMesh mesh(greedy::hull_of_valid(raster));
       const std::int64_t area = area_of(mesh);
       check(mesh, area);
       for (int step = 0; step < 600; ++step) {
@@ -109,7 +110,7 @@ TEST(CellMesh, StaysDelaunayUnderAnyEdits) {
 
 TEST(CellMesh, LocatesAndTellsWhatHasChanged) {
   const Raster raster = test::make_grid(40, 30, [](int, int) { return 0.0F; });
-  CellMesh mesh(raster);
+  CellMesh mesh(greedy::hull_of_valid(raster));
   mesh.clear_changed();
   EXPECT_TRUE(mesh.changed().empty());
   EXPECT_EQ(mesh.insert(cell_at(0, 0), 0), kNone);  // a vertex already

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "retalho/core/parallel.h"
 
@@ -16,6 +17,33 @@ struct Candidate {
   double score = 0;
   Vec3 at;
 };
+
+/// A vertex close to a long edge of the outline would leave a sliver there: then the nearest cell of that edge is
+/// meant instead (as Ruppert 1995 does with encroached segments). Cells are on the edge, as the outline is a box.
+Cell keep_off_outline(const FitState& s, std::uint32_t t, Cell p) {
+  constexpr double kWidest = -0.7;  // cosine of the widest angle under which `p` may see an edge of the outline
+  const auto place = [&](Cell c) {
+    return s.grid.place({static_cast<double>(greedy::column_of(c)), -static_cast<double>(greedy::row_of(c))});
+  };
+  const auto encroached = [&](std::uint32_t triangle) -> std::optional<Cell> {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (s.mesh.neighbors()[triangle][k] != kNone) continue;
+      const auto& v = s.mesh.triangles()[triangle];
+      const Cell a = s.mesh.cell(v[(k + 1) % 3]), b = s.mesh.cell(v[(k + 2) % 3]);
+      const Vec2 pa = place(a) - place(p), pb = place(b) - place(p);
+      if (cross(pa, pb) == 0 || !(dot(pa, pb) < kWidest * norm(pa) * norm(pb))) continue;
+      const bool level = greedy::row_of(a) == greedy::row_of(b);
+      return level ? greedy::cell_at(greedy::column_of(p), greedy::row_of(a))
+                   : greedy::cell_at(greedy::column_of(a), greedy::row_of(p));
+    }
+    return std::nullopt;
+  };
+  if (const auto on_edge = encroached(t)) return *on_edge;
+  for (const std::uint32_t n : s.mesh.neighbors()[t])
+    if (n != kNone)
+      if (const auto on_edge = encroached(n)) return *on_edge;
+  return p;
+}
 
 /// Where triangle `t` wants a vertex; kNone as its triangle where it wants none.
 Candidate candidate(const FitState& s, std::uint32_t t) {
@@ -45,21 +73,18 @@ Candidate candidate(const FitState& s, std::uint32_t t) {
   c.cell = greedy::cell_at(static_cast<int>(std::lround(x / sum)), static_cast<int>(std::lround(y / sum)));
   if (is_corner(c.cell) || std::isnan(s.height(c.cell))) c.cell = cell_of(worst);
   c.score = sum * largest;
+  c.cell = keep_off_outline(s, t, c.cell);
   c.at = s.surface_at(t, c.cell);
   return c;
 }
 
 }  // namespace
 
-std::size_t insert_at_centroids(FitState& state, std::size_t count, const Context& context) {
-  const std::vector<double> costs = state.costs(context);
-  std::vector<std::uint32_t> order(costs.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const std::size_t look = std::min(order.size(), 2 * count + 32);
-  const auto dearer = [&](std::uint32_t a, std::uint32_t b) {
-    return costs[a] != costs[b] ? costs[a] > costs[b] : a < b;
-  };
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(look), order.end(), dearer);
+namespace {
+
+/// Inserts from the first `look` triangles of the order.
+std::size_t insert_from(FitState& state, const std::vector<std::uint32_t>& order, std::size_t look, std::size_t count,
+                        const Context& context) {
   std::vector<Candidate> candidates(look);
   parallel_chunks(look, 32, context, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) candidates[k] = candidate(state, order[k]);
@@ -73,6 +98,21 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
     if (state.insert(c.cell, c.triangle, c.at)) ++done;
   }
   return done;
+}
+
+}  // namespace
+
+std::size_t insert_at_centroids(FitState& state, std::size_t count, const Context& context) {
+  const std::vector<double> costs = state.costs(context);
+  std::vector<std::uint32_t> order(costs.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return costs[a] != costs[b] ? costs[a] > costs[b] : a < b; });
+  for (std::size_t look = 2 * count + 32;; look *= 4) {
+    const std::size_t here = std::min(order.size(), look);
+    const std::size_t done = insert_from(state, order, here, count, context);
+    if (done > 0 || here == order.size()) return done;
+  }
 }
 
 bool exchange(FitState& state, double share, const CgLimits& limits, const Context& context) {

@@ -5,12 +5,34 @@
 
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/tin/grid_hull.h"
 
 namespace retalho {
+namespace {
+
+/// The box of the valid cells. Its corners are vertices even where they are void: the slivers along the slanting sides
+/// of a hull would spoil the surface there.
+std::vector<greedy::Cell> box_of_valid(const Raster& raster) {
+  const std::vector<greedy::Cell> hull = greedy::hull_of_valid(raster);
+  int left = raster.columns, right = 0, top = raster.rows, bottom = 0;
+  for (const greedy::Cell c : hull) {
+    left = std::min(left, greedy::column_of(c));
+    right = std::max(right, greedy::column_of(c));
+    top = std::min(top, greedy::row_of(c));
+    bottom = std::max(bottom, greedy::row_of(c));
+  }
+  using greedy::cell_at;
+  return {cell_at(left, top), cell_at(right, top), cell_at(right, bottom), cell_at(left, bottom)};
+}
+
+}  // namespace
 
 FitState::FitState(const Raster& raster, SurfaceKind surface, const Context& context)
-    : kind(surface), grid(raster, context), mesh(raster) {
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) data.push_back({height(mesh.cell(v)), 0, 0});
+    : kind(surface), grid(raster, context), mesh(box_of_valid(raster)) {
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    const double z = height(mesh.cell(v));
+    data.push_back({std::isnan(z) ? 0 : z, 0, 0});
+  }
   pinned.assign(data.size(), 0);
   weights.inside = (mesh.at(0) + mesh.at(1) + mesh.at(2)) / 3;
 }

@@ -12,7 +12,7 @@ namespace retalho {
 
 struct SurfaceRefineOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
-  std::size_t vertices = 0;   ///< the budget; at least the corners of the valid cells' hull are vertices
+  std::size_t vertices = 0;   ///< the budget; at least the corners of the valid cells' box are vertices
   int relocations = 3;        ///< sweeps of relocation after the last vertex
   int exchanges = 5;          ///< rounds of removal and re-insertion, each followed by a relocation
   double growth = 0.25;       ///< of the number of vertices a round

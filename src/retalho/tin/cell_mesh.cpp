@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "retalho/tin/grid_hull.h"
-
 namespace retalho {
 namespace {
 
@@ -23,8 +21,7 @@ std::uint32_t corner_of(const std::array<std::uint32_t, 3>& t, std::uint32_t ver
 
 }  // namespace
 
-CellMesh::CellMesh(const Raster& raster) {
-  std::vector<Cell> hull = greedy::hull_of_valid(raster);
+CellMesh::CellMesh(std::vector<Cell> hull) {
   std::reverse(hull.begin(), hull.end());  // counter-clockwise from above
   cells_ = hull;
   triangle_at_.assign(hull.size(), 0);

@@ -1,5 +1,5 @@
 // A Delaunay triangulation of grid cells that can be edited: vertices inserted at any cell, moved and removed. The
-// outline stays the convex hull of the grid's valid cells.
+// convex outline stays as it is.
 //
 // Exact integer predicates. Triangles and vertices are numbered without gaps: a removal moves the last of each into the
 // free number. Triangles that an edit made, changed or renumbered are collected in changed().
@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "retalho/raster/raster.h"
 #include "retalho/tin/grid_cell.h"
 #include "retalho/tin/tin.h"
 
@@ -19,8 +18,9 @@ class CellMesh {
  public:
   using Cell = greedy::Cell;
 
-  /// The corners of the valid cells' convex hull as vertices. Throws BadInput ("no area") as refine_grid.
-  explicit CellMesh(const Raster& raster);
+  /// The corners of a convex outline as vertices, in the order that hull_of_valid (grid_hull.h) gives them: area2 > 0
+  /// around, no three on one line.
+  explicit CellMesh(std::vector<Cell> outline);
 
   std::size_t vertex_count() const { return cells_.size(); }
   std::size_t triangle_count() const { return triangles_.size(); }

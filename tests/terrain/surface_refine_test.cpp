@@ -1,0 +1,139 @@
+// Refinement by the surface's own error, in the words of its header.
+#include "retalho/terrain/surface_refine.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "retalho/core/error.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/terrain/least_squares.h"
+#include "retalho/terrain/report.h"
+#include "retalho/tin/grid_cell.h"
+#include "retalho/tin/refine.h"
+#include "support/grids.h"
+
+namespace retalho {
+namespace {
+
+constexpr SurfaceKind kKinds[] = {SurfaceKind::linear, SurfaceKind::powell_sabin, SurfaceKind::clough_tocher};
+
+double hills(double x, double y) {
+  return 40 * std::sin(x / 9.0) * std::cos(y / 12.0) + 10 * std::sin((x + 2 * y) / 5.0) + x / 3 +
+         3 * std::sin(x * y / 300);
+}
+
+Raster hill_grid(int columns, int rows) {
+  return test::make_grid<double>(columns, rows, [](int x, int y) { return hills(x, y); });
+}
+
+void expect_delaunay(const Terrain& terrain, const Raster& raster) {
+  std::vector<greedy::Cell> cells;
+  for (const Vec2 p : terrain.tin.points) {
+    const double column = p.x / raster.cell_width, row = -p.y / raster.cell_height;
+    ASSERT_NEAR(column, std::round(column), 1e-9);
+    ASSERT_NEAR(row, std::round(row), 1e-9);
+    cells.push_back(greedy::cell_at(static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row))));
+  }
+  for (std::size_t t = 0; t < terrain.tin.triangle_count(); ++t) {
+    const auto& v = terrain.tin.triangles[t];
+    for (const std::uint32_t n : terrain.tin.neighbors[t]) {
+      if (n == kNone) continue;
+      for (const std::uint32_t far : terrain.tin.triangles[n]) {
+        ASSERT_FALSE(greedy::in_circle(cells[v[0]], cells[v[2]], cells[v[1]], cells[far]));
+      }
+    }
+  }
+}
+
+TEST(RefineSurface, BeatsFlatRefinementAtEqualNumbers) {
+  const Raster raster = hill_grid(130, 110);
+  const ErrorReport flat =
+      assess(make_terrain(refine_tin(raster, {.vertices = 500}), raster, {SurfaceKind::linear}), raster);
+  for (const SurfaceKind kind : kKinds) {
+    const std::size_t vertices = kind == SurfaceKind::linear ? 500 : 300;
+    const Terrain terrain = refine_surface(raster, {.surface = kind, .vertices = vertices});
+    EXPECT_EQ(terrain.tin.vertex_count(), vertices);
+    expect_delaunay(terrain, raster);
+    const ErrorReport ours = assess(terrain, raster);
+    EXPECT_EQ(ours.uncovered, 0U);
+    EXPECT_LT(ours.rmse, (kind == SurfaceKind::linear ? 0.75 : 0.5) * flat.rmse) << surface_name(kind);
+    if (kind != SurfaceKind::linear) {
+      EXPECT_LT(ours.slope_rmse, 0.6 * flat.slope_rmse) << surface_name(kind);
+    }
+  }
+}
+
+TEST(RefineSurface, EveryStageHelps) {
+  const Raster raster = hill_grid(130, 110);
+  for (const SurfaceKind kind : kKinds) {
+    SurfaceRefineOptions options{.surface = kind, .vertices = 250, .relocations = 0, .exchanges = 0};
+    const double grown = assess(refine_surface(raster, options), raster).rmse;
+    options.relocations = 3;
+    const double relocated = assess(refine_surface(raster, options), raster).rmse;
+    options.exchanges = 5;
+    const double exchanged = assess(refine_surface(raster, options), raster).rmse;
+    EXPECT_LT(relocated, grown) << surface_name(kind);
+    EXPECT_LT(exchanged, relocated) << surface_name(kind);
+    const Terrain greedy =
+        fit_least_squares(make_terrain(refine_tin(raster, {.vertices = 250}), raster, {.surface = kind}), raster);
+    EXPECT_LT(exchanged, assess(greedy, raster).rmse) << surface_name(kind);
+  }
+}
+
+TEST(RefineSurface, TheSameFromAnyNumberOfThreads) {
+  const Raster raster = hill_grid(160, 150);
+  for (const SurfaceKind kind : kKinds) {
+    Context one, four;
+    one.threads = 1;
+    four.threads = 4;
+    const SurfaceRefineOptions options{.surface = kind, .vertices = 700, .relocations = 2, .exchanges = 1};
+    const Terrain a = refine_surface(raster, options, one), b = refine_surface(raster, options, four);
+    EXPECT_EQ(a.tin.points, b.tin.points);
+    EXPECT_EQ(a.tin.heights, b.tin.heights);
+    EXPECT_EQ(a.tin.triangles, b.tin.triangles);
+    EXPECT_EQ(a.gradients, b.gradients);
+  }
+}
+
+TEST(RefineSurface, VoidsAndOddGridsAreCovered) {
+  const auto voids = [](int x, int y) {  // a slanting map sheet with a lake cut out
+    const bool outside =
+        9 * y < x - 4 || 9 * (89 - y) < 99 - x || x > 96 + (y / 20) || (x - 30) * (x - 30) + (y - 40) * (y - 40) < 150;
+    return outside ? std::nan("") : hills(x, y);
+  };
+  const Raster sheet = test::make_grid<double>(100, 90, voids);
+  const Raster flat = test::make_grid(30, 20, [](int, int) { return 5.0F; });
+  const Raster narrow = test::make_grid<double>(200, 2, [](int x, int y) { return hills(x, y); });
+  const Raster tiny = test::make_grid<double>(2, 2, [](int x, int y) { return x + 2.0 * y; });
+  Raster oblong = hill_grid(60, 90);
+  oblong.cell_width = 30;
+  oblong.cell_height = 70;
+  const std::array<const Raster*, 5> grids{&sheet, &flat, &narrow, &tiny, &oblong};
+  for (const Raster* raster : grids)
+    for (const SurfaceKind kind : kKinds) {
+      const Terrain terrain =
+          refine_surface(*raster, {.surface = kind, .vertices = 120, .relocations = 1, .exchanges = 1});
+      EXPECT_LE(terrain.tin.vertex_count(), 120U);
+      expect_delaunay(terrain, *raster);
+      const ErrorReport report = assess(terrain, *raster);
+      EXPECT_EQ(report.uncovered, 0U);
+      EXPECT_TRUE(std::isfinite(report.rmse) && std::isfinite(report.slope_rmse));
+      for (const double z : terrain.tin.heights) EXPECT_TRUE(std::isfinite(z));
+      for (const Vec2 g : terrain.gradients) EXPECT_TRUE(std::isfinite(g.x) && std::isfinite(g.y));
+    }
+  EXPECT_LT(assess(refine_surface(flat, {.vertices = 50}), flat).max_error, 1e-6);
+}
+
+TEST(RefineSurface, RefusesWhatMakesNoSense) {
+  const Raster raster = hill_grid(20, 20);
+  EXPECT_THROW(refine_surface(raster, {.vertices = 10, .growth = 0}), UsageError);
+  EXPECT_THROW(refine_surface(raster, {.vertices = 10, .relocations = -1}), UsageError);
+  EXPECT_THROW(refine_surface(raster, {.vertices = 10, .fairness = std::nan("")}), UsageError);
+  const Raster nothing = test::make_grid<double>(20, 20, [](int, int) { return std::nan(""); });
+  EXPECT_THROW(refine_surface(nothing, {.vertices = 10}), BadInput);
+}
+
+}  // namespace
+}  // namespace retalho
