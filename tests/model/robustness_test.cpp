@@ -17,6 +17,7 @@
 #include "retalho/model/model_codec.h"
 #include "retalho/model/numbers.h"
 #include "support/sample_terrain.h"
+#include "support/sample_tetraquad.h"
 
 namespace retalho {
 namespace {
@@ -33,7 +34,7 @@ Outcome read(const std::string& content) {
   std::copy(file.begin(), file.end(), exact.get());
   try {
     const Model model = decode_model({exact.get(), file.size()}, "m.retalho");
-    EXPECT_EQ(find_fault(std::get<Terrain>(model)), "");
+    EXPECT_EQ(std::visit([](const auto& shape) { return find_fault(shape); }, model), "");
     return Outcome::model;
   } catch (const CannotRead& e) {
     EXPECT_GT(std::strlen(e.what()), 30U) << e.what();
@@ -51,6 +52,7 @@ std::vector<std::string> contents() {
                                                .columns = 4,
                                                .rows = 4,
                                                .mask = true})));
+  all.push_back(encode_content(test::sample_tetraquad()));
   return all;
 }
 

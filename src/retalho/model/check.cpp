@@ -116,4 +116,21 @@ std::string find_fault(const Terrain& terrain, bool neighbors_built) {
   return surface_fault(terrain);
 }
 
+std::string find_fault(const TetraQuad& surface) {
+  const TetMesh& mesh = surface.mesh;
+  if (std::string fault = georef_fault(surface.georef); !fault.empty()) return fault;
+  if (!finite(mesh.origin.x) || !finite(mesh.origin.y) || !finite(mesh.origin.z)) return "the origin is not finite";
+  if (!(mesh.step > 0) || !finite(mesh.step)) return "the step of the grid is not a positive number";
+  if (mesh.tets.empty()) return "no tetrahedra";
+  if (surface.quadrics.size() != mesh.lattice.size())
+    return fmt::format("{} quadrics for {} vertices", surface.quadrics.size(), mesh.lattice.size());
+  for (std::size_t v = 0; v < surface.quadrics.size(); ++v)
+    for (const double c : surface.quadrics[v])
+      if (!finite(c)) return fmt::format("the quadric of vertex {} is not finite", v);
+  const TetMesh made = make_tet_mesh(mesh.origin, mesh.step, mesh.split, mesh.places);
+  if (made.places != mesh.places || made.tets != mesh.tets || made.lattice != mesh.lattice)
+    return "its tetrahedra are not those of its cells";
+  return {};
+}
+
 }  // namespace retalho

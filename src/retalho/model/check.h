@@ -6,6 +6,7 @@
 #include <string>
 
 #include "retalho/terrain/terrain.h"
+#include "retalho/tetraquad/tetraquad.h"
 
 namespace retalho {
 
@@ -18,5 +19,9 @@ std::size_t edge_count(const Tin& tin);
 /// does.
 /// `neighbors_built`: build_neighbors has just made the neighbours, they need no look.
 std::string find_fault(const Terrain& terrain, bool neighbors_built = false);
+
+/// The same for a TetraQuad: finite numbers, a positive step, at least one tetrahedron, one quadric a vertex, and the
+/// mesh that its `places` make.
+std::string find_fault(const TetraQuad& surface);
 
 }  // namespace retalho

@@ -7,11 +7,12 @@
 #include <variant>
 
 #include "retalho/terrain/terrain.h"
+#include "retalho/tetraquad/tetraquad.h"
 
 namespace retalho {
 
 /// What a model file can hold. Further kinds of surface become further alternatives.
-using Model = std::variant<Terrain>;
+using Model = std::variant<Terrain, TetraQuad>;
 
 /// What a file says of itself.
 struct ModelFileNotes {

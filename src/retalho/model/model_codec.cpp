@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "retalho/core/error.h"
 #include "retalho/model/terrain_codec.h"
+#include "retalho/model/tetraquad_codec.h"
 
 namespace retalho {
 namespace {
@@ -35,8 +39,15 @@ class AlignedView {
 std::string encode_content(const Model& model, bool checked) {
   flatbuffers::FlatBufferBuilder builder(1 << 16);
   const auto created_by = builder.CreateString("retalho " RETALHO_VERSION);
-  const auto surface = encode_terrain(builder, std::get<Terrain>(model), checked);
-  const auto root = fb::CreateModelFile(builder, created_by, fb::Surface::TerrainSurface, surface.Union());
+  const auto [kind, surface] = std::visit(
+      [&](const auto& shape) -> std::pair<fb::Surface, flatbuffers::Offset<void>> {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Terrain>)
+          return {fb::Surface::TerrainSurface, encode_terrain(builder, shape, checked).Union()};
+        else
+          return {fb::Surface::TetraQuadSurface, encode_tetraquad(builder, shape, checked).Union()};
+      },
+      model);
+  const auto root = fb::CreateModelFile(builder, created_by, kind, surface);
   fb::FinishModelFileBuffer(builder, root);
   return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
 }
@@ -54,6 +65,8 @@ Model decode_content(std::string_view content, std::string* created_by) {
   switch (file.surface_type()) {
     case fb::Surface::TerrainSurface:
       return decode_terrain(*file.surface_as_TerrainSurface());
+    case fb::Surface::TetraQuadSurface:
+      return decode_tetraquad(*file.surface_as_TetraQuadSurface());
     default:
       throw CannotRead(fmt::format("it holds a kind of surface ({}) that this Retalho does not know: update Retalho",
                                    static_cast<int>(file.surface_type())),

@@ -10,6 +10,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/model/check.h"
+#include "retalho/model/codec_parts.h"
 #include "retalho/model/numbers.h"
 #include "retalho/model/split_prediction.h"
 
@@ -18,35 +19,6 @@ namespace {
 
 namespace fb = model_file;
 using Builder = flatbuffers::FlatBufferBuilder;
-using Bytes = flatbuffers::Vector<std::uint8_t>;
-
-// A FlatBuffer's offsets are 31 bits wide; half of it leaves room for everything that is not an array.
-constexpr std::size_t kMostBytes = std::size_t{2} << 30;
-constexpr std::size_t kMargin = std::size_t{16} << 20;
-
-flatbuffers::Offset<Bytes> add_bytes(Builder& builder, const std::string& bytes) {
-  if (builder.GetSize() + bytes.size() + kMargin > kMostBytes)
-    throw CannotWrite("the model is larger than the 2 GB that a model file can hold: fit with a larger error");
-  return builder.CreateVector(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-}
-
-flatbuffers::Offset<fb::Numbers> add_numbers(Builder& builder, const PackedNumbers& packed) {
-  const auto bytes = add_bytes(builder, packed.bytes);
-  return fb::CreateNumbers(builder, packed.count, static_cast<fb::NumberForm>(packed.form), packed.width,
-                           packed.differences, packed.decimals, bytes);
-}
-
-std::string_view view(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-PackedView view(const fb::Numbers* numbers, const char* what) {
-  if (!numbers) throw CannotRead(fmt::format("{} is missing", what), {}, what);
-  return {numbers->count(),    static_cast<NumberForm>(numbers->form()),
-          numbers->width(),    numbers->differences(),
-          numbers->decimals(), view(*numbers->zstd())};
-}
-
 bool same_bits(Vec2 a, Vec2 b) {
   return std::bit_cast<std::uint64_t>(a.x) == std::bit_cast<std::uint64_t>(b.x) &&
          std::bit_cast<std::uint64_t>(a.y) == std::bit_cast<std::uint64_t>(b.y);
@@ -225,11 +197,6 @@ GridDomain decode_grid(const fb::Grid& table) {
   return grid;
 }
 
-Georef decode_georef(const fb::Georef& table) {
-  return {table.origin_x(),       table.origin_y(),    table.scale_x(),   table.scale_y(),
-          table.crs_wkt()->str(), table.unit()->str(), table.geographic()};
-}
-
 // --- edges -----------------------------------------------------------------------------------------------------------
 
 /// From the predicted split to the true one, in steps of one representable double.
@@ -266,9 +233,7 @@ flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const T
     if (const std::string fault = find_fault(terrain); !fault.empty())
       throw BadInput("this terrain cannot be saved: " + fault);
   }
-  const Georef& g = terrain.georef;
-  const auto wkt = builder.CreateString(g.crs_wkt), unit = builder.CreateString(g.unit);
-  const auto georef = fb::CreateGeoref(builder, g.origin_x, g.origin_y, g.scale_x, g.scale_y, wkt, unit, g.geographic);
+  const auto georef = encode_georef(builder, terrain.georef);
   const auto grid = encode_grid(builder, terrain.grid);
   const PointParts points = encode_points(builder, terrain);
   const auto heights = add_numbers(builder, pack_reals(terrain.tin.heights));

@@ -1,0 +1,52 @@
+// TetraQuad surfaces in model files.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "retalho/core/error.h"
+#include "retalho/model/check.h"
+#include "retalho/model/model.h"
+#include "support/sample_tetraquad.h"
+#include "support/support.h"
+
+namespace retalho {
+namespace {
+
+TEST(TetraQuadModel, ComesBackToTheBit) {
+  for (const TetSplit split : {TetSplit::five, TetSplit::kuhn}) {
+    TetraQuad surface = test::sample_tetraquad(split);
+    surface.georef.crs_wkt = "LOCAL_CS[\"x\"]";
+    surface.georef.origin_x = 4.5e6;
+    test::Random random(31);
+    for (Quadric& q : surface.quadrics)
+      for (double& c : q) c += random.uniform(-1e-3, 1e-3);
+    const test::ScratchFolder folder;
+    save_model(surface, folder / "s.retalho");
+    const auto again = std::get<TetraQuad>(load_model(folder / "s.retalho"));
+    EXPECT_EQ(again.quadrics, surface.quadrics);
+    EXPECT_EQ(again.mesh.places, surface.mesh.places);
+    EXPECT_EQ(again.mesh.tets, surface.mesh.tets);
+    EXPECT_EQ(again.mesh.origin, surface.mesh.origin);
+    EXPECT_EQ(again.mesh.step, surface.mesh.step);
+    EXPECT_EQ(again.mesh.split, split);
+    EXPECT_EQ(again.georef.origin_x, 4.5e6);
+    EXPECT_EQ(again.georef.crs_wkt, surface.georef.crs_wkt);
+    EXPECT_EQ(encode_model(again), encode_model(surface));
+  }
+}
+
+TEST(TetraQuadModel, OnesWithFaultsAreNotSaved) {
+  TetraQuad surface = test::sample_tetraquad();
+  surface.quadrics[3][4] = NAN;
+  EXPECT_THROW(encode_model(surface), BadInput);
+  surface = test::sample_tetraquad();
+  surface.quadrics.pop_back();
+  EXPECT_THROW(encode_model(surface), BadInput);
+  surface = test::sample_tetraquad();
+  surface.mesh.step = 0;
+  EXPECT_THROW(encode_model(surface), BadInput);
+  EXPECT_THROW(encode_model(TetraQuad{}), BadInput);
+}
+
+}  // namespace
+}  // namespace retalho
