@@ -51,10 +51,14 @@ PointCloud load_points(const Program& program, const std::string& path, const Po
   return cloud;
 }
 
-Terrain load_terrain(const std::string& path) {
+Model load_any_model(const std::string& path) {
   if (std::filesystem::exists(path) && !is_model_file(path))
     throw CannotRead(fmt::format("'{}' is not a model file of retalho: make one with `retalho fit`", path), path);
-  Model model = load_model(path);
+  return load_model(path);
+}
+
+Terrain load_terrain(const std::string& path) {
+  Model model = load_any_model(path);
   if (Terrain* terrain = std::get_if<Terrain>(&model)) return std::move(*terrain);
   throw BadInput(fmt::format("'{}' holds no terrain: this command works on models made by `retalho fit`", path), path);
 }

@@ -8,6 +8,7 @@
 
 #include "program.h"
 #include "retalho/cloud/cloud.h"
+#include "retalho/model/model.h"
 #include "retalho/raster/io.h"
 #include "retalho/terrain/terrain.h"
 
@@ -28,6 +29,8 @@ PointCloud load_points(const Program& program, const std::string& path, const Po
                        const Context& context);
 /// A terrain model. Throws BadInput when the model holds another kind of surface.
 Terrain load_terrain(const std::string& path);
+/// Any model. Throws CannotRead, which says how models are made where the file is none.
+Model load_any_model(const std::string& path);
 
 /// The name of a CRS, out of its WKT; empty when there is none.
 std::string crs_name(const std::string& wkt);

@@ -17,3 +17,5 @@ if(RETALHO_SUITESPARSE)
   find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
 endif()
 include(RetalhoFlatbuffers)
+find_path(EMBREE_INCLUDE_DIR embree3/rtcore.h REQUIRED)          # tetraquad/rays: the tree that finds tetrahedra
+find_library(EMBREE_LIBRARY embree3 REQUIRED)

@@ -82,7 +82,7 @@ Json point_info(const Options& options, const Context& context) {
   return result;
 }
 
-Json terrain_info(const Options& options, const Terrain& terrain) {
+Json model_info(const Options& options, const Terrain& terrain) {
   const Tin& tin = terrain.tin;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec2 low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
@@ -119,9 +119,43 @@ Json terrain_info(const Options& options, const Terrain& terrain) {
   return result;
 }
 
+Json model_info(const Options& options, const TetraQuad& surface) {
+  const TetraQuadField field(surface);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+  std::vector<char> live(surface.mesh.lattice.size(), 0);
+  std::size_t crossed = 0;
+  for (std::size_t t = 0; t < surface.mesh.tets.size(); ++t) {
+    if (!field.crosses(t)) continue;
+    ++crossed;
+    for (const std::uint32_t v : surface.mesh.tets[t]) {
+      live[v] = 1;
+      const Vec3 p = surface.mesh.position(v);
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  }
+  Json result = {{"file", options.file},
+                 {"kind", "tetraquad"},
+                 {"split", surface.mesh.split == TetSplit::five ? "five" : "kuhn"},
+                 {"step", surface.mesh.step},
+                 {"vertices", surface.mesh.lattice.size()},
+                 {"tetrahedra", surface.mesh.tets.size()},
+                 {"crossed", crossed},
+                 {"coefficients", 10 * std::count(live.begin(), live.end(), 1)},
+                 {"bytes", std::filesystem::file_size(options.file)}};
+  add_place(result, surface.georef);
+  if (crossed > 0) {  // of the tetrahedra that the surface passes through
+    result["bounds"] = bounds_json(surface.georef, {low.x, low.y}, {high.x, high.y});
+    result["minimum"] = low.z;
+    result["maximum"] = high.z;
+  }
+  return result;
+}
+
 Json info(const Options& options, const Context& context) {
   if (is_model_file(options.file))
-    return std::visit([&](const auto& shape) { return terrain_info(options, shape); }, load_model(options.file));
+    return std::visit([&](const auto& shape) { return model_info(options, shape); }, load_model(options.file));
   if (std::filesystem::path(options.file).extension() == ".retalho") load_model(options.file);  // says what is wrong
   if (is_point_file(options.file) || !options.points.height_field.empty() || !options.points.layer.empty())
     return point_info(options, context);

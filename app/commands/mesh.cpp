@@ -3,10 +3,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <type_traits>
+#include <variant>
 
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/terrain_mesh.h"
+#include "retalho/mesh/tetraquad_mesh.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -22,12 +25,28 @@ void run(const Program& program, const Options& options) {
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
   check_output(program, options.output, {".ply", ".obj", ".stl", ".glb"}, {options.model});
   const Context context = program.context();
-  const Terrain terrain = load_terrain(options.model);
-  const double tolerance = mesh_tolerance(terrain, {.tolerance = options.tolerance});
-  if (options.tolerance <= 0)
-    program.say(
-        fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)", tolerance));
-  const TriangleMesh mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
+  const Model model = load_any_model(options.model);
+  double tolerance = options.tolerance;
+  const TriangleMesh mesh = std::visit(
+      [&](const auto& shape) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Terrain>) {
+          tolerance = mesh_tolerance(shape, {.tolerance = options.tolerance});
+          if (options.tolerance <= 0)
+            program.say(fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)",
+                                    tolerance));
+          return mesh_terrain(shape, {.tolerance = tolerance}, context);
+        } else {
+          TetraQuadMeshNotes notes;
+          const TetraQuadField field(shape);
+          TriangleMesh triangles = mesh_tetraquad(field, {.tolerance = options.tolerance}, &notes, context);
+          if (options.tolerance <= 0 || notes.deviation > options.tolerance)
+            program.say(fmt::format("{} parts a tetrahedron's edge: triangles within {:.3g} of the surface",
+                                    notes.divisions, notes.deviation));
+          tolerance = notes.deviation;
+          return triangles;
+        }
+      },
+      model);
   context.check();
   const MeshCheck check = check_mesh(mesh);
   write_mesh(mesh, options.output, program.overwrite);
@@ -58,7 +77,7 @@ void add_mesh(CLI::App& root, Program& program) {
   command->add_option("-o,--output", options->output, "The mesh: .ply, .obj, .stl or .glb")
       ->required()
       ->type_name("FILE");
-  command->add_option("--tolerance", options->tolerance, "Largest vertical distance to the surface, height units")
+  command->add_option("--tolerance", options->tolerance, "Largest distance to the surface (terrain: vertical)")
       ->type_name("T");
   command->callback([options, &program] { run(program, *options); });
 }

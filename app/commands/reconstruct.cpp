@@ -25,7 +25,7 @@ void run(const Program& program, const Options& options) {
   const std::size_t split = choose("--split", options.split, kSplits);
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
-  check_output(program, options.output, {".ply", ".obj", ".stl", ".glb"}, {options.points});
+  check_output(program, options.output, {".retalho", ".ply", ".obj", ".stl", ".glb"}, {options.points});
   if (!options.tetrahedra.empty())
     check_output(program, options.tetrahedra, {".vtk"}, {options.points, options.output});
   const Context context = program.context();
@@ -51,7 +51,10 @@ void run(const Program& program, const Options& options) {
   if (topology.open_edges > 0)
     program.say(fmt::format("the surface is open: {} edges along {} borders", topology.open_edges, topology.borders));
   context.check();
-  write_mesh(mesh, options.output, program.overwrite);
+  if (std::filesystem::path(options.output).extension() == ".retalho")
+    save_model(surface, options.output, program.overwrite);
+  else
+    write_mesh(mesh, options.output, program.overwrite);
   if (!options.tetrahedra.empty()) {
     std::vector<double> values;
     for (const Quadric& q : surface.quadrics) values.push_back(q[0] * surface.mesh.step);
@@ -88,11 +91,11 @@ void run(const Program& program, const Options& options) {
 void add_reconstruct(CLI::App& root, Program& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = add_command(root, program, "reconstruct", "Points with normals to a smooth closed surface",
-                                  "retalho reconstruct scan.ply -o surface.ply\n"
+                                  "retalho reconstruct scan.ply -o surface.retalho\n"
                                   "retalho reconstruct scan.xyz --resolution 48 -o surface.glb --tolerance 0.01\n"
                                   "retalho reconstruct noisy.ply --smoothness 10 -o surface.obj --json");
   command->add_option("POINTS", options->points, "Points with normals: .ply, .xyz, .csv")->required()->type_name("");
-  command->add_option("-o,--output", options->output, "The surface as triangles: .ply, .obj, .stl or .glb")
+  command->add_option("-o,--output", options->output, "The model (.retalho), or triangles: .ply, .obj, .stl, .glb")
       ->required()
       ->type_name("FILE");
   command

@@ -9,6 +9,7 @@
 
 #include "fitting.h"
 #include "inputs.h"
+#include "render_tetraquad.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/render/compose.h"
@@ -30,6 +31,7 @@ struct Options {
   double elevation = 35;
   bool captions = true;
   GridFlags grid;
+  TetraQuadFlags tetraquad;
 };
 
 /// One of the inputs: a grid or a model, ready to be drawn. Not to be moved: the source refers to it.
@@ -140,6 +142,43 @@ Image draw(const Options& options, const Scene& scene, const Layout& layout, con
   return draw_perspective(source, scene.georef, scene.extent, layout.width, layout.height, perspective, color, context);
 }
 
+bool is_tetraquad(const std::string& path) {
+  return is_model_file(path) && std::holds_alternative<TetraQuad>(load_model(path));
+}
+
+/// Only TetraQuad models: drawn by ray casting.
+void run_tetraquad(const Program& program, const Options& options) {
+  const Context context = program.context();
+  const auto count = static_cast<int>(options.inputs.size());
+  const int lines = options.captions ? 2 : 0;
+  Layout layout = grow_layout(count, kPanelPixels, kPanelPixels, lines);
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_size("--size", options.size);
+    layout = fit_layout(count, width, height, 1, lines);
+  }
+  std::vector<Panel> panels;
+  for (const std::string& path : options.inputs) {
+    Model model = load_any_model(path);
+    const TetraQuad* surface = std::get_if<TetraQuad>(&model);
+    if (surface == nullptr)
+      throw UsageError(fmt::format("'{}' is no TetraQuad model: they are drawn among themselves", path), path);
+    Panel panel;
+    panel.picture =
+        draw_panel(*surface, options.tetraquad, options.from, options.elevation, layout.width, layout.height, context);
+    if (options.captions) panel.caption = {std::filesystem::path(path).filename().string(), kind_text(*surface)};
+    panels.push_back(std::move(panel));
+  }
+  const Image sheet = compose(layout, panels);
+  context.check();
+  write_png(sheet, options.output, program.overwrite);
+  const nlohmann::ordered_json json = {{"width", sheet.width},
+                                       {"height", sheet.height},
+                                       {"panels", panels.size()},
+                                       {"bytes", std::filesystem::file_size(options.output)}};
+  if (program.json) return program.print(json);
+  program.say(fmt::format("{}: {} x {} pixels", options.output, sheet.width, sheet.height));
+}
+
 void run(const Program& program, const Options& options) {
   const ReliefOptions relief = parse_relief(options);
   choose("--view", options.view, kViews);
@@ -147,6 +186,7 @@ void run(const Program& program, const Options& options) {
   std::vector<std::string> files = options.inputs;
   if (!options.error.empty()) files.push_back(options.error);
   check_output(program, options.output, {".png"}, files);
+  if (is_tetraquad(options.inputs.front())) return run_tetraquad(program, options);
   const Context context = program.context();
   std::vector<std::unique_ptr<Shape>> shapes;
   for (const std::string& path : options.inputs) shapes.push_back(load_shape(program, path, options.grid, context));
@@ -200,7 +240,8 @@ void add_render(CLI::App& root, Program& program) {
   CLI::App* command = add_command(root, program, "render", "Grids and models as a picture, side by side",
                                   "retalho render dem.tif dem.retalho -o picture.png\n"
                                   "retalho render dem.retalho -o block.png --view perspective --size 1600x1000\n"
-                                  "retalho render flat.retalho smooth.retalho -o errors.png --error dem.tif");
+                                  "retalho render flat.retalho smooth.retalho -o errors.png --error dem.tif\n"
+                                  "retalho render scan.retalho -o scan.png --up y --from 30 --cut 'x<0.2'");
   command->add_option("FILE", options->inputs, "Models (.retalho) and elevation grids")->required()->type_name("");
   command->add_option("-o,--output", options->output, "The picture, ending in .png")->required()->type_name("FILE");
   command->add_option("--size", options->size, "Of the whole picture, pixels")->type_name("WxH");
@@ -218,6 +259,7 @@ void add_render(CLI::App& root, Program& program) {
       ->type_name("ALT");
   command->add_flag("!--no-captions", options->captions, "No words under the pictures");
   add_grid_flags(*command, options->grid);
+  add_tetraquad_flags(*command, options->tetraquad);
   command->callback([options, &program] { run(program, *options); });
 }
 

@@ -85,11 +85,13 @@ TetraQuad decode_tetraquad(const fb::TetraQuadSurface& table) {
   }
   for (std::size_t t = 1; t < places.size(); ++t)
     if (!(places[t - 1] < places[t])) refuse(fmt::format("tetrahedron {} is out of order", t), "cell_x");
-  surface.mesh = make_tet_mesh({table.origin_x(), table.origin_y(), table.origin_z()}, table.step(), split,
-                               std::move(places));
+  surface.mesh =
+      make_tet_mesh({table.origin_x(), table.origin_y(), table.origin_z()}, table.step(), split, std::move(places));
   if (surface.mesh.lattice.size() != table.vertices())
-    refuse(fmt::format("{} vertices for tetrahedra with {}", table.vertices(), surface.mesh.lattice.size()), "vertices");
-  if (table.quadrics() == nullptr || table.quadrics()->size() != 10) refuse("not ten coefficients a vertex", "quadrics");
+    refuse(fmt::format("{} vertices for tetrahedra with {}", table.vertices(), surface.mesh.lattice.size()),
+           "vertices");
+  if (table.quadrics() == nullptr || table.quadrics()->size() != 10)
+    refuse("not ten coefficients a vertex", "quadrics");
   surface.quadrics.resize(surface.mesh.lattice.size());
   for (std::uint32_t k = 0; k < 10; ++k) {
     const std::vector<double> values =

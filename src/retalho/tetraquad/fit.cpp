@@ -193,8 +193,12 @@ TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& opti
   for (const TetPlace& place : samples.places) data.push_back(place.cell);
   std::sort(data.begin(), data.end());
   data.erase(std::unique(data.begin(), data.end()), data.end());
-  while (report.growth_rounds < options.growth && grow_once(surface, faces, data, kReach, weights, context) > 0)
-    ++report.growth_rounds;
+  std::vector<TetPlace> with_points = samples.places;
+  std::sort(with_points.begin(), with_points.end());
+  with_points.erase(std::unique(with_points.begin(), with_points.end()), with_points.end());
+  report.stray = drop_stray(surface, faces, with_points);
+  report.growth_rounds = grow(surface, faces, data, kReach, options.growth, weights, context);
+  report.stray += drop_stray(surface, faces, with_points);
   report.open_faces = open_faces(surface, faces).size();
   measure(TetraQuadField(surface), sorted_samples(samples, surface.mesh), report);
   if (report_out != nullptr) *report_out = std::move(report);

@@ -21,9 +21,9 @@ struct TetraQuadFitOptions {
   double bending = 1e-6;                            ///< of the second derivatives
   double normal_weight = 1;                         ///< of the normals against the distances in steps of the grid
   double ridge = 1e-9;                              ///< of the mean of the diagonal: the redundancy's share
-  /// At most so many times tetrahedra are added where the surface leaves those that there are, up to two cells beyond
-  /// those with points: small holes close, larger ones and the border of open data stay open.
-  int growth = 12;
+  /// At most so many times tetrahedra are added where the surface leaves those that there are, up to two cubes beyond
+  /// those with points. What does not close a hole is taken back: larger holes and the border of open data stay open.
+  int growth = 3;
 };
 
 struct TetraQuadFitReport {
@@ -34,6 +34,7 @@ struct TetraQuadFitReport {
   std::size_t coefficients = 0;    ///< ten a vertex of those
   std::size_t factor_numbers = 0;  ///< in the Cholesky factors
   int growth_rounds = 0;
+  std::size_t stray = 0;                       ///< tetrahedra dropped with sheets that no point asks for
   std::size_t open_faces = 0;                  ///< border faces that the surface still meets (0: it is closed)
   double residual_mean = 0, residual_max = 0;  ///< of |C| / |grad C| at the points, lengths
   double residual_quantile = 0;                ///< 99 % of the points are within

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace retalho {
 namespace {
@@ -95,7 +96,91 @@ void solve_new(TetraQuad& surface, const HalfFaces& faces, const std::vector<cha
     std::copy_n(right.begin() + static_cast<std::ptrdiff_t>(kBlock * k), kBlock, surface.quadrics[vertex[k]].begin());
 }
 
+/// The same surface on other tetrahedra; vertices that it did not have get zeros.
+TetraQuad with_places(const TetraQuad& surface, std::vector<TetPlace> places) {
+  TetraQuad other;
+  other.georef = surface.georef;
+  other.mesh = make_tet_mesh(surface.mesh.origin, surface.mesh.step, surface.mesh.split, std::move(places));
+  std::unordered_map<std::uint64_t, std::uint32_t> old;
+  for (std::uint32_t v = 0; v < surface.mesh.lattice.size(); ++v) old.emplace(cell_key(surface.mesh.lattice[v]), v);
+  other.quadrics.resize(other.mesh.lattice.size());
+  for (std::size_t v = 0; v < other.quadrics.size(); ++v)
+    if (const auto at = old.find(cell_key(other.mesh.lattice[v])); at != old.end())
+      other.quadrics[v] = surface.quadrics[at->second];
+  return other;
+}
+
+/// `own`, and those of the others that the surface reaches from there without meeting an open face.
+std::vector<TetPlace> useful_places(const TetraQuad& surface, const HalfFaces& faces,
+                                    const std::vector<TetPlace>& own) {
+  const TetMesh& mesh = surface.mesh;
+  const auto is_own = [&](std::size_t t) { return std::binary_search(own.begin(), own.end(), mesh.places[t]); };
+  enum : char { unseen, kept, open };
+  std::vector<char> state(mesh.tets.size(), unseen);
+  std::vector<std::uint32_t> stack;
+  // Spreads a state over added tetrahedra, across faces that the surface crosses.
+  const auto spread = [&](std::uint32_t from, char value, std::vector<std::uint32_t>* reached) {
+    stack.assign(1, from);
+    while (!stack.empty()) {
+      const std::uint32_t t = stack.back();
+      stack.pop_back();
+      const TetCubic c = ordinates(surface, t);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::int64_t o = faces.neighbour(t, i);
+        if (o < 0 || !crosses_face(c, i)) continue;
+        const auto other = static_cast<std::uint32_t>(o);
+        if (is_own(other) || state[other] != unseen) continue;
+        state[other] = value;
+        if (reached != nullptr) reached->push_back(other);
+        stack.push_back(other);
+      }
+    }
+  };
+  for (const std::uint32_t f : open_faces(surface, faces)) {
+    if (is_own(f / 4) || state[f / 4] != unseen) continue;
+    state[f / 4] = open;
+    spread(f / 4, open, nullptr);
+  }
+  std::vector<TetPlace> places = own;
+  std::vector<std::uint32_t> reached;
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+    if (is_own(t)) spread(t, kept, &reached);
+  for (const std::uint32_t t : reached) places.push_back(mesh.places[t]);
+  return places;
+}
+
 }  // namespace
+
+std::size_t drop_stray(TetraQuad& surface, HalfFaces& faces, const std::vector<TetPlace>& with_points) {
+  const TetMesh& mesh = surface.mesh;
+  const TetraQuadField field(surface);
+  std::vector<char> reached(mesh.tets.size(), 0);
+  std::vector<std::uint32_t> stack;
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+    if (std::binary_search(with_points.begin(), with_points.end(), mesh.places[t])) {
+      reached[t] = 1;
+      stack.push_back(t);
+    }
+  while (!stack.empty()) {
+    const std::uint32_t t = stack.back();
+    stack.pop_back();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::int64_t o = faces.neighbour(t, i);
+      if (o < 0 || reached[static_cast<std::size_t>(o)] != 0 || !crosses_face(field.ordinates(t), i)) continue;
+      reached[static_cast<std::size_t>(o)] = 1;
+      stack.push_back(static_cast<std::uint32_t>(o));
+    }
+  }
+  std::vector<TetPlace> places;
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+    if (reached[t] != 0 || !field.may_cross(t)) places.push_back(mesh.places[t]);
+  const std::size_t dropped = mesh.tets.size() - places.size();
+  if (dropped > 0) {
+    surface = with_places(surface, std::move(places));
+    faces = HalfFaces(surface.mesh.tets, surface.mesh.lattice.size());
+  }
+  return dropped;
+}
 
 std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces& faces) {
   std::vector<std::uint32_t> open;
@@ -108,33 +193,42 @@ std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces&
   return open;
 }
 
-std::size_t grow_once(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach,
-                      const EnergyWeights& weights, const Context& context) {
-  std::vector<TetPlace> places = surface.mesh.places;
-  const std::size_t before = places.size();
-  for (const std::uint32_t f : open_faces(surface, faces)) {
-    const TetPlace beyond = across(surface.mesh.split, surface.mesh.places[f / 4], static_cast<int>(f % 4));
-    if (is_near(beyond.cell, data, reach)) places.push_back(beyond);
+int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach, int rounds,
+         const EnergyWeights& weights, const Context& context) {
+  const std::vector<TetPlace> own = surface.mesh.places;
+  std::unordered_set<std::uint64_t> own_vertices;
+  for (const LatticePoint& v : surface.mesh.lattice) own_vertices.insert(cell_key(v));
+  int round = 0;
+  while (round < rounds) {
+    context.check();
+    std::vector<TetPlace> places = surface.mesh.places;
+    std::unordered_set<std::uint64_t> seen;
+    for (const std::uint32_t f : open_faces(surface, faces)) {
+      const TetPlace beyond = across(surface.mesh.split, surface.mesh.places[f / 4], static_cast<int>(f % 4));
+      for (int side = 0; side < 27; ++side) {
+        const LatticePoint cell = {beyond.cell[0] + side % 3 - 1, beyond.cell[1] + side / 3 % 3 - 1,
+                                   beyond.cell[2] + side / 9 - 1};
+        if (!seen.insert(cell_key(cell)).second || !is_near(cell, data, reach)) continue;
+        for (int type = 0; type < tets_of_cube(surface.mesh.split); ++type)
+          places.push_back({cell, static_cast<std::uint8_t>(type)});
+      }
+    }
+    const std::size_t before = surface.mesh.tets.size();
+    TetraQuad grown = with_places(surface, std::move(places));
+    if (grown.mesh.tets.size() == before) break;
+    ++round;
+    surface = std::move(grown);
+    faces = HalfFaces(surface.mesh.tets, surface.mesh.lattice.size());
+    std::vector<char> is_new(surface.quadrics.size());
+    for (std::size_t v = 0; v < is_new.size(); ++v)
+      is_new[v] = own_vertices.contains(cell_key(surface.mesh.lattice[v])) ? 0 : 1;
+    solve_new(surface, faces, is_new, weights, context);
   }
-  if (places.size() == before) return 0;
-  TetraQuad grown;
-  grown.georef = surface.georef;
-  grown.mesh = make_tet_mesh(surface.mesh.origin, surface.mesh.step, surface.mesh.split, std::move(places));
-  std::unordered_map<std::uint64_t, std::uint32_t> old;
-  for (std::uint32_t v = 0; v < surface.mesh.lattice.size(); ++v) old.emplace(cell_key(surface.mesh.lattice[v]), v);
-  grown.quadrics.resize(grown.mesh.lattice.size());
-  std::vector<char> is_new(grown.quadrics.size(), 0);
-  for (std::size_t v = 0; v < grown.quadrics.size(); ++v) {
-    const auto at = old.find(cell_key(grown.mesh.lattice[v]));
-    if (at == old.end())
-      is_new[v] = 1;
-    else
-      grown.quadrics[v] = surface.quadrics[at->second];
+  if (round > 0) {
+    surface = with_places(surface, useful_places(surface, faces, own));
+    faces = HalfFaces(surface.mesh.tets, surface.mesh.lattice.size());
   }
-  faces = HalfFaces(grown.mesh.tets, grown.mesh.lattice.size());
-  solve_new(grown, faces, is_new, weights, context);
-  surface = std::move(grown);
-  return surface.mesh.tets.size() - before;
+  return round;
 }
 
 }  // namespace retalho

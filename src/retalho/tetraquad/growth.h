@@ -10,12 +10,17 @@
 
 namespace retalho {
 
+/// Drops tetrahedra whose piece of the surface hangs together with none in a tetrahedron of `with_points` (ascending):
+/// sheets that no point asks for. Returns how many.
+std::size_t drop_stray(TetraQuad& surface, HalfFaces& faces, const std::vector<TetPlace>& with_points);
+
 /// Border half-faces that the surface meets: the function changes its sign on a lattice of six parts a side.
 std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces& faces);
 
-/// Adds the tetrahedra beyond those faces whose cell is within `reach` cells of one of `data` (ascending). The new
-/// vertices' quadrics minimise the smoothing terms of the energy, the others stay. Returns how many were added.
-std::size_t grow_once(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach,
-                      const EnergyWeights& weights, const Context& context);
+/// Closes holes: adds all tetrahedra of the cubes round those faces, as long as a cube is within `reach` cubes of one
+/// of `data` (ascending), at most `rounds` times. All that has been added minimises the smoothing terms of the energy
+/// together, the rest stays. In the end only what closes a hole is kept. Returns the number of rounds.
+int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach, int rounds,
+         const EnergyWeights& weights, const Context& context);
 
 }  // namespace retalho
