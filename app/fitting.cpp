@@ -169,7 +169,7 @@ void say_violations(const Program& program, const ModelReport& report) {
   if (e.uncovered > 0)
     program.say(fmt::format("warning: the model has no data at {} of {} valid cells", e.uncovered, e.valid_cells));
   if (e.violations == 0) return;
-  if (report.surface == kSurfaces[0])
+  if (report.surface == kSurfaces[0] || report.refined)
     program.say(fmt::format("warning: {} of {} valid cells are over the tolerance {:.6g} (largest error {:.6g})",
                             e.violations, e.valid_cells, report.tolerance, e.max_error));
   else

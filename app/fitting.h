@@ -62,6 +62,7 @@ struct ModelReport {
   double tolerance = 0;
   ErrorReport errors;
   bool has_slope = true;
+  bool refined = false;  ///< by its own error: the tolerance is the surface's, not the flat triangulation's
 };
 /// Everything but name, bytes and errors.
 ModelReport facts_of(const Terrain& terrain);

@@ -40,7 +40,10 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   Fit fit;
   const Stopwatch watch;
   if (refines_surface(options.surface, false)) {
-    fit.terrain = refine_surface(raster, {.surface = surface.surface, .vertices = budget.vertices}, context);
+    if (budget.tolerance && budget.max_error == 0)
+      throw UsageError("--refine surface takes a --max-error over 0", {}, "--max-error");
+    fit.terrain = refine_surface(
+        raster, {.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices}, context);
     fit.seconds_triangulation = watch.seconds();
   } else {
     Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
@@ -113,9 +116,7 @@ void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   const SurfaceOptions surface = resolve(options.surface, takes_points(options));
   resolve_fit(options.surface, takes_points(options));
-  if (refines_surface(options.surface, takes_points(options)) && options.budget.vertices == std::nullopt &&
-      options.budget.ratio.empty())
-    throw UsageError("--refine surface needs --vertices or --ratio", {}, "--refine");
+  refines_surface(options.surface, takes_points(options));
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
   const Fit fit = takes_points(options) ? fit_points(program, options, surface, context)
@@ -126,6 +127,7 @@ void run(const Program& program, const Options& options) {
   report.bytes = std::filesystem::file_size(options.output);
   report.errors = fit.errors;
   report.has_slope = fit.has_slope;
+  report.refined = refines_surface(options.surface, takes_points(options));
   say_violations(program, report);
   nlohmann::ordered_json json = to_json(report);
   json["seconds"] = watch.seconds();

@@ -213,6 +213,12 @@ TEST(Models, RefinementBySurfaceIsNearerStill) {
   EXPECT_EQ(refined.json()["vertices"], 60);
   EXPECT_LT(refined.json()["rmse"].get<double>(), fitted.json()["rmse"].get<double>());
   EXPECT_EQ(refined.json()["uncovered"], 0);
+  const Outcome within = run(folder, "fit dem.asc -o d.retalho --json --max-error 2 --refine surface");
+  ASSERT_EQ(within.code, 0) << within.err;
+  EXPECT_EQ(within.json()["violations"], 0);
+  EXPECT_LE(within.json()["max_error"].get<double>(), 2);
+  EXPECT_EQ(run(folder, "compare dem.asc d.retalho --json").json()["models"][0]["violations"], 0);  // of the file
+  EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --max-error 0 --refine surface").code, 2);
   EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --vertices 60 --refine surface --fit z-only").code, 2);
   EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --vertices 60 --refine other").code, 2);
   EXPECT_EQ(run(folder, "mesh b.retalho -o b.ply").code, 0);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
@@ -88,12 +89,15 @@ TEST(RefineSurface, TheSameFromAnyNumberOfThreads) {
     Context one, four;
     one.threads = 1;
     four.threads = 4;
-    const SurfaceRefineOptions options{.surface = kind, .vertices = 700, .relocations = 2, .exchanges = 1};
-    const Terrain a = refine_surface(raster, options, one), b = refine_surface(raster, options, four);
-    EXPECT_EQ(a.tin.points, b.tin.points);
-    EXPECT_EQ(a.tin.heights, b.tin.heights);
-    EXPECT_EQ(a.tin.triangles, b.tin.triangles);
-    EXPECT_EQ(a.gradients, b.gradients);
+    const SurfaceRefineOptions budget{.surface = kind, .vertices = 700, .relocations = 2, .exchanges = 1};
+    const SurfaceRefineOptions tolerance{.surface = kind, .max_error = 2, .relocations = 1, .exchanges = 1};
+    for (const SurfaceRefineOptions& options : {budget, tolerance}) {
+      const Terrain a = refine_surface(raster, options, one), b = refine_surface(raster, options, four);
+      EXPECT_EQ(a.tin.points, b.tin.points);
+      EXPECT_EQ(a.tin.heights, b.tin.heights);
+      EXPECT_EQ(a.tin.triangles, b.tin.triangles);
+      EXPECT_EQ(a.gradients, b.gradients);
+    }
   }
 }
 
@@ -126,10 +130,64 @@ TEST(RefineSurface, VoidsAndOddGridsAreCovered) {
   EXPECT_LT(assess(refine_surface(flat, {.vertices = 50}), flat).max_error, 1e-6);
 }
 
+/// Every valid cell, by the evaluator: neither the refinement's scan nor the report's.
+double largest_error(const Terrain& terrain, const Raster& raster) {
+  const TerrainEvaluator evaluator(terrain);
+  double largest = 0;
+  for (int y = 0; y < raster.rows; ++y)
+    for (int x = 0; x < raster.columns; ++x) {
+      if (!raster.valid(x, y)) continue;
+      const double error = std::abs(evaluator.value(raster.centre(x, y)) - raster.at(x, y));
+      if (!(error <= largest)) largest = error;
+    }
+  return largest;
+}
+
+TEST(RefineSurface, EveryCellIsWithinTheTolerance) {
+  const Raster smooth = hill_grid(110, 90);
+  const Raster steps = test::make_grid<double>(70, 60, [](int x, int y) {  // buildings
+    const double ground = hills(x, y) / 4;
+    return (x / 12 + y / 15) % 2 == 0 ? ground + 25 : ground;
+  });
+  const Raster voids = test::make_grid<double>(70, 60, [](int x, int y) {
+    return 7 * y < x - 9 || (x - 30) * (x - 30) + (y - 40) * (y - 40) < 150 ? std::nan("") : hills(x, y);
+  });
+  const std::array<const Raster*, 3> grids{&smooth, &steps, &voids};
+  for (const Raster* raster : grids)
+    for (const SurfaceKind kind : kKinds)
+      for (const double tolerance : {6.0, 1.0}) {
+        const Terrain terrain = refine_surface(*raster, {.surface = kind, .max_error = tolerance, .exchanges = 2});
+        EXPECT_EQ(assess(terrain, *raster, tolerance).violations, 0U) << surface_name(kind) << " " << tolerance;
+        EXPECT_LE(largest_error(terrain, *raster), tolerance * (1 + 1e-12)) << surface_name(kind) << " " << tolerance;
+        EXPECT_EQ(terrain.tolerance, tolerance);
+      }
+  const std::size_t flat = refine_tin(smooth, {.max_error = 1}).vertex_count();
+  EXPECT_LT(5 * refine_surface(smooth, {.max_error = 1}).tin.vertex_count(), 0.6 * 3 * static_cast<double>(flat));
+}
+
+TEST(RefineSurface, AToleranceThatNothingMeetsButEveryCellEnds) {
+  const Raster noise = test::make_grid<double>(24, 20, [](int x, int y) { return (x * 7919 + y * 104729) % 101; });
+  for (const SurfaceKind kind : kKinds)
+    for (const double tolerance : {1e-3, 1e-12}) {
+      const Terrain terrain = refine_surface(noise, {.surface = kind, .max_error = tolerance});
+      EXPECT_EQ(assess(terrain, noise, tolerance).violations, 0U) << surface_name(kind);
+    }
+}
+
+TEST(RefineSurface, BudgetAndToleranceWhicheverComesFirst) {
+  const Raster raster = hill_grid(110, 90);
+  EXPECT_LE(refine_surface(raster, {.max_error = 0.1, .vertices = 100}).tin.vertex_count(), 100U);
+  const Terrain loose = refine_surface(raster, {.max_error = 20, .vertices = 4000});
+  EXPECT_LT(loose.tin.vertex_count(), 1000U);
+  EXPECT_EQ(assess(loose, raster, 20).violations, 0U);
+}
+
 TEST(RefineSurface, RefusesWhatMakesNoSense) {
   const Raster raster = hill_grid(20, 20);
   EXPECT_THROW(refine_surface(raster, {.vertices = 10, .growth = 0}), UsageError);
   EXPECT_THROW(refine_surface(raster, {.vertices = 10, .relocations = -1}), UsageError);
+  EXPECT_THROW(refine_surface(raster, {.max_error = -1}), UsageError);
+  EXPECT_THROW(refine_surface(raster, {}), UsageError);
   EXPECT_THROW(refine_surface(raster, {.vertices = 10, .fairness = std::nan("")}), UsageError);
   const Raster nothing = test::make_grid<double>(20, 20, [](int, int) { return std::nan(""); });
   EXPECT_THROW(refine_surface(nothing, {.vertices = 10}), BadInput);

@@ -60,9 +60,10 @@ Candidate candidate(const FitState& s, std::uint32_t t) {
   each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside, [&](std::size_t k, double error) {
     const double weight = (s.cell_weights.empty() ? 1.0 : s.cell_weights[k]) * error * error;
     sum += weight;
-    x += weight * static_cast<double>(k % across);
-    y += weight * static_cast<double>(k / across);
-    if (std::abs(error) > largest && !is_corner(cell_of(k))) {
+    const Cell cell = cell_of(k);
+    x += weight * greedy::column_of(cell);
+    y += weight * greedy::row_of(cell);
+    if (std::abs(error) > largest && !is_corner(cell)) {
       largest = std::abs(error);
       worst = k;
     }
@@ -80,11 +81,9 @@ Candidate candidate(const FitState& s, std::uint32_t t) {
 
 }  // namespace
 
-namespace {
-
-/// Inserts from the first `look` triangles of the order.
-std::size_t insert_from(FitState& state, const std::vector<std::uint32_t>& order, std::size_t look, std::size_t count,
-                        const Context& context) {
+std::size_t insert_in(FitState& state, std::span<const std::uint32_t> order, std::size_t count,
+                      const Context& context) {
+  const std::size_t look = order.size();
   std::vector<Candidate> candidates(look);
   parallel_chunks(look, 32, context, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) candidates[k] = candidate(state, order[k]);
@@ -100,8 +99,6 @@ std::size_t insert_from(FitState& state, const std::vector<std::uint32_t>& order
   return done;
 }
 
-}  // namespace
-
 std::size_t insert_at_centroids(FitState& state, std::size_t count, const Context& context) {
   const std::vector<double> costs = state.costs(context);
   std::vector<std::uint32_t> order(costs.size());
@@ -110,7 +107,7 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
             [&](std::uint32_t a, std::uint32_t b) { return costs[a] != costs[b] ? costs[a] > costs[b] : a < b; });
   for (std::size_t look = 2 * count + 32;; look *= 4) {
     const std::size_t here = std::min(order.size(), look);
-    const std::size_t done = insert_from(state, order, here, count, context);
+    const std::size_t done = insert_in(state, std::span(order).first(here), count, context);
     if (done > 0 || here == order.size()) return done;
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "retalho/terrain/fit_state.h"
@@ -11,6 +12,8 @@ namespace retalho {
 
 /// Inserts up to `count` vertices, each at the centroid of the squared errors of a triangle, the triangles with the
 /// largest share of the objective first, none that touches another of this call. Returns how many.
+std::size_t insert_in(FitState& state, std::span<const std::uint32_t> triangles, std::size_t count,
+                      const Context& context);  // of these triangles only
 std::size_t insert_at_centroids(FitState& state, std::size_t count, const Context& context);
 
 /// One sweep over all vertices: each may step in one of 8 directions to where its star, with the vertex's own data

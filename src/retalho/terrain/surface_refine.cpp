@@ -7,18 +7,20 @@
 
 #include "retalho/core/error.h"
 #include "retalho/terrain/fit_moves.h"
+#include "retalho/terrain/fit_tolerance.h"
 
 namespace retalho {
 namespace {
-
-constexpr CgLimits kRough{1e-5, 60}, kFinal{1e-8, 1000};
-constexpr double kExchanged = 0.05;  // of the vertices a round
 
 void check(const SurfaceRefineOptions& o) {
   if (!(o.slope_weight >= 0) || !(o.fairness >= 0) || std::isinf(o.slope_weight) || std::isinf(o.fairness))
     throw UsageError(fmt::format("the weights of a fit must be 0 or more, not {} (slopes) and {} (fairness)",
                                  o.slope_weight, o.fairness));
   if (!(o.growth > 0 && o.growth <= 1)) throw UsageError(fmt::format("growth must be in (0, 1], not {}", o.growth));
+  if (!(o.max_error >= 0) || std::isinf(o.max_error))
+    throw UsageError(fmt::format("the largest error must be 0 or more, not {}", o.max_error), {}, "max_error");
+  if (o.max_error == 0 && o.vertices == 0)
+    throw UsageError("refinement of a surface needs a largest error or a budget");
   if (o.relocations < 0 || o.exchanges < 0) throw UsageError("relocations and exchanges must be 0 or more");
 }
 
@@ -37,7 +39,7 @@ FitState begin(const Raster& raster, const SurfaceRefineOptions& options, const 
       if (raster.valid(column, row)) state.insert(cell, 0, {state.height(cell), 0, 0});
     }
   state.refresh(context);
-  state.solve(kRough, context);
+  state.solve(kRoughSolve, context);
   return state;
 }
 
@@ -48,29 +50,41 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
     const auto round = std::max<std::size_t>(1, static_cast<std::size_t>(growth * static_cast<double>(n)));
     if (insert_at_centroids(state, std::min(round, vertices - n), context) == 0) break;
     state.refresh(context);
-    state.solve(kRough, context);
+    state.solve(kRoughSolve, context);
     context.report("refine", static_cast<double>(n) / static_cast<double>(vertices));
   }
 }
 
 }  // namespace
 
+void better(FitState& state, int relocations, int exchanges, const Context& context) {
+  constexpr double kExchanged = 0.05;  // of the vertices a round
+  double reach = 0.35;
+  const auto sweep = [&](int done) {
+    context.report("relocate", done / std::max(1.0, static_cast<double>(relocations + exchanges)));
+    relocate(state, reach, kRoughSolve, context);
+    reach = std::max(0.15, reach * 0.85);
+  };
+  for (int k = 0; k < relocations; ++k) sweep(k);
+  for (int k = 0; k < exchanges; ++k) {
+    exchange(state, kExchanged, kRoughSolve, context);
+    sweep(relocations + k);
+  }
+}
+
 Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
   check(options);
   FitState state = begin(raster, options, context);
-  grow(state, options.vertices, options.growth, context);
-  double reach = 0.35;
-  const auto sweep = [&](int done) {
-    context.report("relocate", done / std::max(1.0, static_cast<double>(options.relocations + options.exchanges)));
-    relocate(state, reach, kRough, context);
-    reach = std::max(0.15, reach * 0.85);
-  };
-  for (int k = 0; k < options.relocations; ++k) sweep(k);
-  for (int k = 0; k < options.exchanges; ++k) {
-    exchange(state, kExchanged, kRough, context);
-    sweep(options.relocations + k);
+  if (options.max_error > 0) {
+    const ToleranceOptions tolerance{options.max_error, options.vertices, options.growth, options.relocations,
+                                     options.exchanges};
+    Terrain terrain = refine_to_tolerance(state, raster, tolerance, context);
+    terrain.tolerance = options.max_error;
+    return terrain;
   }
-  state.solve(kFinal, context);
+  grow(state, options.vertices, options.growth, context);
+  better(state, options.relocations, options.exchanges, context);
+  state.solve(kFinalSolve, context);
   return to_terrain(state, raster, context);
 }
 

@@ -12,7 +12,9 @@ namespace retalho {
 
 struct SurfaceRefineOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
-  std::size_t vertices = 0;   ///< the budget; at least the corners of the valid cells' box are vertices
+  double max_error = 0;       ///< height units: every valid cell within it of the surface; 0: only the budget counts
+  std::size_t vertices = 0;   ///< the budget, 0: none; with both, whichever comes first. At least the corners of the
+                              ///< valid cells' box are vertices
   int relocations = 3;        ///< sweeps of relocation after the last vertex
   int exchanges = 5;          ///< rounds of removal and re-insertion, each followed by a relocation
   double growth = 0.25;       ///< of the number of vertices a round
@@ -21,9 +23,11 @@ struct SurfaceRefineOptions {
 };
 
 /// Vertices are cells, inserted at the centroids of the squared errors, moved, removed and inserted elsewhere; heights
-/// and gradients of all are fitted to all valid cells after each step, and no step that makes the objective larger is
-/// kept. The triangulation is Delaunay in cell coordinates. The same result from any number of threads. Throws BadInput
-/// as refine_grid, UsageError for options out of range, Interrupted.
+/// and gradients of all are fitted to all valid cells after each step, and no exchange or relocation that makes the
+/// objective larger is kept. The triangulation is Delaunay in cell coordinates. The same result from any number of
+/// threads. With max_error and no budget every valid cell is within max_error of the surface, as assess() finds;
+/// refinement always ends, at the latest when every cell is a vertex with its own height. One of max_error and vertices
+/// must be given. Throws BadInput as refine_grid, UsageError for options out of range, Interrupted.
 Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context = {});
 
 }  // namespace retalho
