@@ -110,6 +110,7 @@ SideCurve::SideCurve(Curve curve, bool reversed, SidePlacement placement)
 }
 
 SideJet SideCurve::canonical(double s) const {
+  if (function_) return function_(s);
   if (!length_) {
     const double length = curve_.end() - curve_.begin();
     const CurveJet jet = evaluate_jet(curve_, s >= 1 ? curve_.end() : curve_.begin() + s * length);
@@ -149,6 +150,8 @@ double size_of(const PatchSides& sides) {
 PatchSides join_sides(const PatchSides& sides, const SideOptions& options, const std::string& where) {
   const std::string prefix = where.empty() ? std::string() : where + ": ";
   if (!(options.snap >= 0)) throw UsageError("the snapping distance must be 0 or more", {}, "--snap");
+  for (const SideCurve& side : sides)
+    if (side.curve().empty()) throw UsageError("only sides that are curves can be joined");
   const double size = size_of(sides), tolerance = std::max(kSame * size, options.snap);
   for (std::size_t i = 0; i < 3; ++i) {
     const double length = control_size(sides[i].curve().points);

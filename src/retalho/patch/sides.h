@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,10 @@ class SideCurve {
   /// Throws BadInput for a curve without segments.
   explicit SideCurve(Curve curve, bool reversed = false, SidePlacement placement = SidePlacement::parameter);
 
+  /// A side that no curve of the house describes exactly, by its point and derivatives for s in [0, 1]. It cannot be
+  /// kept in a model file, nor compared with others for crossings; curve() is empty.
+  explicit SideCurve(std::function<SideJet(double)> side) : function_(std::move(side)) {}
+
   SideJet jet(double s) const;
   Vec3 point(double s) const;
   /// The point at s = k / n.
@@ -49,6 +54,7 @@ class SideCurve {
   bool reversed_ = false;
   SidePlacement placement_ = SidePlacement::parameter;
   std::shared_ptr<const ArcLength> length_;
+  std::function<SideJet(double)> function_;
 };
 
 using PatchSides = std::array<SideCurve, 3>;

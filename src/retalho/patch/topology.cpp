@@ -34,4 +34,22 @@ std::vector<Triangle> triangle_neighbors(std::span<const Triangle> triangles) {
   return neighbors;
 }
 
+VertexNeighbors vertex_neighbors(std::span<const Triangle> triangles, std::size_t vertices) {
+  const VertexTriangles around = vertex_triangles(triangles, vertices);
+  VertexNeighbors out;
+  out.first.reserve(vertices + 1);
+  out.first.push_back(0);
+  out.vertices.reserve(3 * triangles.size() + 2 * vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto start = static_cast<std::ptrdiff_t>(out.vertices.size());
+    for (const std::uint32_t t : around.of(v))
+      for (const std::uint32_t w : triangles[t])
+        if (w != v) out.vertices.push_back(w);
+    std::sort(out.vertices.begin() + start, out.vertices.end());
+    out.vertices.erase(std::unique(out.vertices.begin() + start, out.vertices.end()), out.vertices.end());
+    out.first.push_back(static_cast<std::uint32_t>(out.vertices.size()));
+  }
+  return out;
+}
+
 }  // namespace retalho

@@ -25,4 +25,13 @@ VertexTriangles vertex_triangles(std::span<const Triangle> triangles, std::size_
 /// edge that two triangles run along the same way has no neighbour there.
 std::vector<Triangle> triangle_neighbors(std::span<const Triangle> triangles);
 
+/// The vertices that share an edge with each vertex, ascending, as one list with starts.
+struct VertexNeighbors {
+  std::vector<std::uint32_t> first, vertices;
+  std::span<const std::uint32_t> of(std::size_t vertex) const {
+    return std::span(vertices).subspan(first[vertex], first[vertex + 1] - first[vertex]);
+  }
+};
+VertexNeighbors vertex_neighbors(std::span<const Triangle> triangles, std::size_t vertices);
+
 }  // namespace retalho
