@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -49,6 +52,14 @@ PointCloud load_points(const Program& program, const std::string& path, const Po
   for (const std::string& remark : notes.remarks) program.say("  " + remark);
   program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
   return cloud;
+}
+
+bool takes_points(const std::string& path, const PointOptions& options) {
+  if (is_point_file(path) || !options.height_field.empty() || !options.layer.empty()) return true;
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  static const std::vector<std::string> vectors{".shp", ".geojson", ".json", ".fgb", ".gml", ".kml", ".gpkg"};
+  return std::find(vectors.begin(), vectors.end(), ending) != vectors.end();
 }
 
 Model load_any_model(const std::string& path) {

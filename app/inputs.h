@@ -27,6 +27,8 @@ Raster load_grid(const Program& program, const std::string& path, const GridFlag
 /// The same for scattered points.
 PointCloud load_points(const Program& program, const std::string& path, const PointOptions& options,
                        const Context& context);
+/// Is this path read as points: by its ending, or since an attribute or a layer is named?
+bool takes_points(const std::string& path, const PointOptions& options);
 /// A terrain model. Throws BadInput when the model holds another kind of surface.
 Terrain load_terrain(const std::string& path);
 /// Any model. Throws CannotRead, which says how models are made where the file is none.

@@ -62,6 +62,7 @@ void add_render(CLI::App& root, Program& program);
 void add_curve(CLI::App& root, Program& program);
 void add_patch(CLI::App& root, Program& program);
 void add_viewshed(CLI::App& root, Program& program);
+void add_contour(CLI::App& root, Program& program);
 void add_reconstruct(CLI::App& root, Program& program);
 
 }  // namespace retalho::app

@@ -83,15 +83,6 @@ Fit fit_points(const Program& program, const Options& options, const SurfaceOpti
   return fit;
 }
 
-bool takes_points(const Options& options) {
-  if (is_point_file(options.input) || !options.points.height_field.empty() || !options.points.layer.empty())
-    return true;
-  std::string ending = std::filesystem::path(options.input).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  static const std::vector<std::string> vectors{".shp", ".geojson", ".json", ".fgb", ".gml", ".kml", ".gpkg"};
-  return std::find(vectors.begin(), vectors.end(), ending) != vectors.end();
-}
-
 std::string report_text(const ModelReport& report, const nlohmann::ordered_json& json) {
   const ErrorReport& e = report.errors;
   std::vector<std::pair<std::string, std::string>> lines{
@@ -114,20 +105,20 @@ std::string report_text(const ModelReport& report, const nlohmann::ordered_json&
 
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
-  const SurfaceOptions surface = resolve(options.surface, takes_points(options));
-  resolve_fit(options.surface, takes_points(options));
-  refines_surface(options.surface, takes_points(options));
+  const SurfaceOptions surface = resolve(options.surface, takes_points(options.input, options.points));
+  resolve_fit(options.surface, takes_points(options.input, options.points));
+  refines_surface(options.surface, takes_points(options.input, options.points));
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
-  const Fit fit = takes_points(options) ? fit_points(program, options, surface, context)
-                                        : fit_grid(program, options, surface, context);
+  const Fit fit = takes_points(options.input, options.points) ? fit_points(program, options, surface, context)
+                                                              : fit_grid(program, options, surface, context);
   context.check();
   save_model(fit.terrain, options.output, program.overwrite);
   ModelReport report = facts_of(fit.terrain);
   report.bytes = std::filesystem::file_size(options.output);
   report.errors = fit.errors;
   report.has_slope = fit.has_slope;
-  report.refined = refines_surface(options.surface, takes_points(options));
+  report.refined = refines_surface(options.surface, takes_points(options.input, options.points));
   say_violations(program, report);
   nlohmann::ordered_json json = to_json(report);
   json["seconds"] = watch.seconds();

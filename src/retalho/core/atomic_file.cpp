@@ -73,6 +73,18 @@ void AtomicFile::commit() {
   sync_path(folder, O_RDONLY | O_DIRECTORY);
 }
 
+std::set<std::string> sidecars(const std::string& file) {
+  std::set<std::string> found;
+  const fs::path path(file);
+  const std::string stem = path.stem().string();
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(stem) && name != path.filename().string()) found.insert(name.substr(stem.size()));
+  }
+  return found;
+}
+
 void write_file(const std::string& path, std::string_view bytes, bool overwrite) {
   AtomicFile file(path, overwrite);
   const int fd = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);

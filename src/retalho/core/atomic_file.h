@@ -1,6 +1,7 @@
 // Outputs are complete or absent: written beside their final name, flushed to disk, renamed at the end.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,9 @@ class AtomicFile {
   bool overwrite_;
   bool committed_ = false;
 };
+
+/// Files beside `file` whose names go on where its stem ends (.prj, .hdr, .aux.xml): what follows the stem of each.
+std::set<std::string> sidecars(const std::string& file);
 
 /// Writes `bytes` to `path` atomically. Throws CannotWrite.
 void write_file(const std::string& path, std::string_view bytes, bool overwrite);

@@ -160,18 +160,6 @@ void check_voids(const Raster& raster, const std::string& file, const std::strin
         fmt::format("'{}': this format has no no-data value, and the raster has void cells: use .tif", path), path);
 }
 
-/// Files that a driver made beside `temporary` (.prj, .hdr, .aux.xml), as what follows the temporary's stem.
-std::set<std::string> sidecars(const fs::path& temporary) {
-  std::set<std::string> found;
-  const std::string stem = temporary.stem().string();
-  const fs::path folder = temporary.has_parent_path() ? temporary.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(stem) && name != temporary.filename().string()) found.insert(name.substr(stem.size()));
-  }
-  return found;
-}
-
 }  // namespace
 
 void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options, const Context& context) {
@@ -205,7 +193,7 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
                                     messages.words("a creation option is wrong")),
                         path);
     make(driver, file.temporary(), raster, options, messages, context);
-    made = sidecars(temporary);
+    made = sidecars(temporary.string());
     if (messages.failed() || !fs::exists(temporary, ec))
       throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
                                     messages.words("no reason was given")),
@@ -216,7 +204,7 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
         throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", beside(target, tail).string()),
                           path);
   } catch (...) {
-    for (const std::string& tail : sidecars(temporary)) fs::remove(beside(temporary, tail), ec);
+    for (const std::string& tail : sidecars(temporary.string())) fs::remove(beside(temporary, tail), ec);
     throw;
   }
   for (const std::string& old : leftovers) fs::remove(old, ec);

@@ -1,0 +1,247 @@
+// retalho contour: level lines of a smooth surface, or the regions between them.
+#include "retalho/level/contour.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting.h"
+#include "inputs.h"
+#include "retalho/core/error.h"
+#include "retalho/level/write_vector.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/tin/refine.h"
+#include "retalho/tin/scattered.h"
+#include "table.h"
+
+namespace retalho::app {
+namespace {
+
+const std::vector<std::string> kSurfaces{"bicubic", "linear", "powell-sabin", "clough-tocher"};
+const std::vector<std::string> kTwists{"spline", "adini", "zero"};
+const std::vector<std::string> kEnds{"not-a-knot", "natural"};
+const std::vector<std::string> kEndings{".gpkg", ".geojson", ".json", ".shp", ".dxf"};
+
+struct Options {
+  std::string input, output, levels, surface, twist = "spline", ends = "not-a-knot";
+  double interval = 0, base = 0, tolerance = 0;
+  int index_every = 5;
+  bool bands = false, ring = false, raw = false;
+  GridFlags grid;
+  PointOptions points;
+  BudgetFlags budget;
+};
+
+/// What is traced: one of the two, and what its reader knew.
+struct Surface {
+  std::optional<BicubicGrid> bicubic;
+  std::optional<Terrain> terrain;
+  double low = 0, high = 0;  ///< of the samples; the surface may go a little beyond
+  double cell = 0;           ///< size of a cell, or of a triangle's edge; local units
+  const Georef& georef() const { return bicubic ? bicubic->georef : terrain->georef; }
+};
+
+double mean_edge(const Tin& tin) {
+  double sum = 0;
+  for (const auto& t : tin.triangles) sum += norm(tin.points[t[1]] - tin.points[t[0]]);
+  return tin.triangles.empty() ? 1 : sum / static_cast<double>(tin.triangles.size());
+}
+
+void measure(Surface& surface) {
+  const Terrain& terrain = *surface.terrain;
+  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
+  surface.low = *low;
+  surface.high = *high;
+  surface.cell =
+      terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height) : mean_edge(terrain.tin);
+}
+
+Surface load_surface(const Program& program, const Options& options, const Context& context) {
+  Surface surface;
+  const bool model = is_model_file(options.input);
+  const bool points = !model && takes_points(options.input, options.points);
+  const std::string kind = !options.surface.empty() ? options.surface : points ? "clough-tocher" : "bicubic";
+  const std::size_t chosen = choose("--surface", kind, kSurfaces);
+  if (model) {
+    if (!options.surface.empty())
+      throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
+    surface.terrain = load_terrain(options.input);
+    measure(surface);
+    return surface;
+  }
+  if (points) {
+    if (chosen == 0) throw UsageError("--surface bicubic needs a grid: points take the other three", {}, "--surface");
+    const PointCloud cloud = load_points(program, options.input, options.points, context);
+    SurfaceFlags flags;
+    flags.surface = kind;
+    surface.terrain = make_terrain(triangulate_points(cloud.positions, nullptr, context), cloud.georef,
+                                   resolve(flags, true), context);
+    measure(surface);
+    return surface;
+  }
+  RasterSummary summary;
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  if (chosen == 0) {
+    if (options.budget.given())
+      throw UsageError("--surface bicubic takes every cell: --max-error, --vertices and --ratio are for the others", {},
+                       "--surface");
+    surface.bicubic = make_bicubic(raster,
+                                   {.ends = static_cast<SplineEnds>(choose("--ends", options.ends, kEnds)),
+                                    .twist = *parse_twist(kTwists[choose("--twist", options.twist, kTwists)]),
+                                    .keep_flats = !options.ring},
+                                   context);
+    surface.low = summary.minimum;
+    surface.high = summary.maximum;
+    surface.cell = std::min(raster.cell_width, raster.cell_height);
+    return surface;
+  }
+  const Budget budget = resolve(program, options.budget, summary.valid, summary.maximum - summary.minimum);
+  SurfaceFlags flags;
+  flags.surface = kind;
+  surface.terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster,
+                                 resolve(flags, false), context);
+  measure(surface);
+  return surface;
+}
+
+std::vector<double> parse_levels(const std::string& text) {
+  std::vector<double> levels;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const std::string word = text.substr(at, comma - at);
+    char* end = nullptr;
+    const double level = std::strtod(word.c_str(), &end);
+    if (word.empty() || *end != '\0' || !std::isfinite(level))
+      throw UsageError(fmt::format("--levels: '{}' is not a number (100,200,350)", word), {}, "--levels");
+    levels.push_back(level);
+    at = comma + 1;
+  }
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+/// A smooth surface may rise above its highest sample: levels go on a little beyond both ends.
+std::vector<double> levels_of(const Options& options, const Surface& surface) {
+  if (!options.levels.empty()) return parse_levels(options.levels);
+  const double beyond = 0.25 * (surface.high - surface.low);
+  return contour_levels(surface.low - beyond, surface.high + beyond, options.interval, options.base);
+}
+
+nlohmann::ordered_json singular_json(const ContourSet& set, const Georef& georef) {
+  auto list = nlohmann::ordered_json::array();
+  for (const SingularPlace& place : set.singular) {
+    const Vec2 low = georef.to_crs(place.low), high = georef.to_crs(place.high);
+    list.push_back(
+        {{"level", set.levels[static_cast<std::size_t>(place.level)]}, {"box", {low.x, low.y, high.x, high.y}}});
+  }
+  return list;
+}
+
+void run(const Program& program, const Options& options) {
+  const Stopwatch watch;
+  if ((options.interval > 0) == !options.levels.empty())
+    throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
+  check_output(program, options.output, kEndings, {options.input});
+  const Context context = program.context();
+  const Surface surface = load_surface(program, options, context);
+  ContourOptions contour;
+  contour.simplify = !options.raw;
+  contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
+  if (!(options.tolerance > 0))
+    program.say(fmt::format("--tolerance {:.6g}: a tenth of {} (chosen, as none was given)", contour.tolerance,
+                            surface.bicubic || surface.terrain->grid.columns > 0 ? "a cell" : "a triangle's edge"));
+  ContourExtras extras;
+  extras.want_bands = options.bands;
+  const std::vector<double> levels = levels_of(options, surface);
+  const ContourSet set = surface.bicubic ? trace_contours(*surface.bicubic, levels, contour, context, &extras)
+                                         : trace_contours(*surface.terrain, levels, contour, context, &extras);
+  context.check();
+  const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
+  if (options.bands)
+    write_bands(extras.bands, surface.georef(), options.output, file, context);
+  else
+    write_contours(set, surface.georef(), options.output, file, context);
+
+  std::size_t closed = 0;
+  for (const ContourLine& line : set.lines) closed += line.closed ? 1 : 0;
+  if (set.lines.empty())
+    program.say(fmt::format("no level lies between {:.6g} and {:.6g}: {}", surface.low, surface.high,
+                            options.bands ? "one band" : "the layer has no features"));
+  if (!set.singular.empty())
+    program.say(
+        fmt::format("{} places are singular (a saddle or a flat exactly on a level): the lines are joined there "
+                    "by rule; --json lists them",
+                    set.singular.size()));
+  nlohmann::ordered_json json = {{"levels", set.levels.size()}, {"lines", set.lines.size()},
+                                 {"closed_lines", closed},      {"vertices", set.points.size()},
+                                 {"tolerance", set.tolerance},  {"height_quantum", set.height_quantum}};
+  if (options.bands) json["polygons"] = extras.bands.polygons.size();
+  json["singular"] = singular_json(set, surface.georef());
+  json["seconds"] = watch.seconds();
+  if (program.json) return program.print(json);
+  std::vector<std::pair<std::string, std::string>> lines{
+      {"levels", fmt::format("{}", set.levels.size())},
+      {"lines", fmt::format("{} ({} closed)", set.lines.size(), closed)},
+      {"vertices", fmt::format("{} (traced {})", set.points.size(), extras.stats.raw_points)},
+      {"tolerance", fmt::format("{:.6g}", set.tolerance)},
+      {"singular places", fmt::format("{}", set.singular.size())},
+      {"seconds", fmt::format("{:.2f}", watch.seconds())}};
+  if (options.bands) lines.insert(lines.begin() + 1, {"polygons", fmt::format("{}", extras.bands.polygons.size())});
+  program.print(list_text(lines));
+}
+
+}  // namespace
+
+void add_contour(CLI::App& root, Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(root, program, "contour", "Level lines of the smooth surface: none missed, none crossing",
+                  "retalho contour dem.tif -o lines.gpkg --interval 20\n"
+                  "retalho contour dem.tif -o bands.gpkg --interval 100 --bands\n"
+                  "retalho contour dem.tif -o lines.shp --levels 350,400,500 --tolerance 2\n"
+                  "retalho contour model.retalho -o lines.geojson --interval 10\n"
+                  "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
+  command->add_option("INPUT", options->input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf")->required()->type_name("FILE");
+  command->add_option("--interval", options->interval, "Height between levels")
+      ->type_name("D")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--base", options->base, "A height that is a level, and an index contour (default 0)")
+      ->type_name("B");
+  command->add_option("--levels", options->levels, "The levels themselves")->type_name("A,B,C");
+  command
+      ->add_option(
+          "--tolerance", options->tolerance,
+          "How far lines may lie from the true level lines (default a tenth of a cell; metres where the CRS is "
+          "geographic)")
+      ->type_name("T")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--surface", options->surface,
+                   "bicubic (default for grids), linear, powell-sabin or clough-tocher (default for points)")
+      ->type_name("KIND");
+  command->add_option("--twist", options->twist, "Bicubic: spline (default), adini, or zero as in the paper")
+      ->type_name("KIND");
+  command->add_option("--ends", options->ends, "Bicubic: not-a-knot (default) or natural")->type_name("KIND");
+  command->add_flag("--ring", options->ring, "Bicubic: splines all through, although they ring beside flats and lakes");
+  command->add_flag("--bands", options->bands, "Polygons between the levels instead of lines");
+  command->add_flag("--raw", options->raw, "Keep every traced vertex");
+  command
+      ->add_option("--index-every", options->index_every,
+                   "Every so many levels is an index contour (default 5; 0: none)")
+      ->check(CLI::Range(0, 1000));
+  command
+      ->add_option("--height-field", options->points.height_field, "Vector layers: the attribute that holds the height")
+      ->type_name("NAME");
+  command->add_option("--layer", options->points.layer, "Vector files with several layers: which one")
+      ->type_name("NAME");
+  add_budget_flags(*command, options->budget);
+  add_grid_flags(*command, options->grid);
+  command->callback([&program, options] { run(program, *options); });
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,220 @@
+#include "retalho/level/write_vector.h"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "retalho/core/atomic_file.h"
+#include "retalho/core/error.h"
+#include "retalho/raster/gdal.h"
+
+namespace retalho {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Format {
+  const char* ending;
+  const char* driver;
+};
+constexpr Format kFormats[] = {
+    {".gpkg", "GPKG"}, {".geojson", "GeoJSON"}, {".json", "GeoJSON"}, {".shp", "ESRI Shapefile"}, {".dxf", "DXF"}};
+
+std::string driver_of(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const Format& f : kFormats)
+    if (ending == f.ending) return f.driver;
+  throw CannotWrite(
+      fmt::format("'{}': no vector format of ours ends in '{}': use .gpkg, .geojson, .shp or .dxf", path, ending),
+      path);
+}
+
+/// A layer in the making, and the messages that tell whether it went well.
+class LayerWriter {
+ public:
+  LayerWriter(const std::string& file, const std::string& driver_name, const std::string& layer_name,
+              OGRwkbGeometryType type, const Georef& georef)
+      : driver_name_(driver_name) {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name.c_str());
+    if (driver == nullptr) throw CannotWrite(fmt::format("this GDAL has no driver {}", driver_name), file);
+    dataset_.reset(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    if (!dataset_) return;
+    OGRSpatialReference crs;
+    const bool has_crs = !georef.crs_wkt.empty() && crs.importFromWkt(georef.crs_wkt.c_str()) == OGRERR_NONE;
+    if (has_crs) crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    layer_ = dataset_->CreateLayer(layer_name.c_str(), has_crs ? &crs : nullptr, type, nullptr);
+    if (dataset_->TestCapability(ODsCTransactions)) dataset_->StartTransaction();
+    in_transaction_ = true;
+  }
+
+  bool dxf() const { return driver_name_ == "DXF"; }
+  bool usable() const { return layer_ != nullptr; }
+
+  void field(const char* name, OGRFieldType type) {
+    if (layer_ == nullptr || dxf()) return;  // DXF has its own fields
+    OGRFieldDefn definition(name, type);
+    if (type == OFTReal && driver_name_ == "ESRI Shapefile") {
+      definition.SetWidth(18);
+      definition.SetPrecision(6);
+    }
+    ok_ = layer_->CreateField(&definition) == OGRERR_NONE && ok_;
+  }
+  void add(const OGRGeometry& geometry, const std::function<void(OGRFeature&)>& fill) {
+    if (!usable()) return;
+    const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer_->GetLayerDefn()));
+    fill(*feature);
+    ok_ = feature->SetGeometry(&geometry) == OGRERR_NONE && layer_->CreateFeature(feature.get()) == OGRERR_NONE && ok_;
+  }
+  bool ok() const { return ok_; }
+  /// Closing may fail as well: GDAL says so through its messages only.
+  void close() {
+    if (dataset_ && in_transaction_ && dataset_->TestCapability(ODsCTransactions))
+      ok_ = dataset_->CommitTransaction() == OGRERR_NONE && ok_;
+    dataset_.reset();
+  }
+
+ private:
+  std::string driver_name_;
+  DatasetPtr dataset_;
+  OGRLayer* layer_ = nullptr;
+  bool ok_ = true, in_transaction_ = false;
+};
+
+/// Lets `fill` write into a file beside `path`, then gives it, with all its parts, the name asked for.
+void write_layer(const std::string& path, const std::string& layer_name, OGRwkbGeometryType type, const Georef& georef,
+                 bool overwrite, const std::function<void(LayerWriter&)>& fill) {
+  register_gdal();
+  const std::string driver = driver_of(path);
+  AtomicFile file(path, overwrite);
+  const fs::path temporary(file.temporary()), target(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const auto beside = [&](const fs::path& of, const std::string& tail) { return folder / (of.stem().string() + tail); };
+  std::error_code ec;
+  std::set<std::string> parts;
+  try {
+    const GdalMessages messages;
+    LayerWriter writer(file.temporary(), driver, layer_name, type, georef);
+    if (writer.usable()) fill(writer);
+    writer.close();
+    parts = sidecars(temporary.string());
+    if (messages.failed() || !writer.usable() || !writer.ok() || !fs::exists(temporary, ec))
+      throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver, messages.words("no reason was given")),
+                        path);
+    for (const std::string& tail : parts)
+      if (!overwrite && fs::exists(beside(target, tail), ec))
+        throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", beside(target, tail).string()),
+                          path);
+  } catch (...) {
+    for (const std::string& tail : sidecars(temporary.string())) fs::remove(beside(temporary, tail), ec);
+    throw;
+  }
+  for (const std::string& tail : parts) fs::rename(beside(temporary, tail), beside(target, tail), ec);
+  file.commit();
+}
+
+std::string stem_of(const std::string& path) {
+  return fs::path(path).stem().string();
+}
+
+void append(OGRLinearRing& ring, const std::vector<Vec2>& points, const Georef& georef) {
+  // Shells counter-clockwise, as RFC 7946 and OGC want them; GDAL turns them round for Shapefiles.
+  ring.setNumPoints(static_cast<int>(points.size() + 1), FALSE);
+  for (std::size_t i = 0; i <= points.size(); ++i) {
+    const Vec2 p = georef.to_crs(points[i % points.size()]);
+    ring.setPoint(static_cast<int>(i), p.x, p.y);
+  }
+}
+
+}  // namespace
+
+bool is_index_level(const std::vector<double>& levels, int level, const VectorOptions& options) {
+  if (options.index_every <= 0) return false;
+  const double place =
+      options.interval > 0
+          ? std::round((levels[static_cast<std::size_t>(level)] - options.index_base) / options.interval)
+          : level;
+  return std::fmod(place, options.index_every) == 0;
+}
+
+void write_contours(const ContourSet& set, const Georef& georef, const std::string& path, const VectorOptions& options,
+                    const Context& context) {
+  const std::string driver = driver_of(path);
+  const bool dxf = driver == "DXF";
+  const std::string layer = driver == "ESRI Shapefile" ? stem_of(path) : dxf ? "entities" : "contours";
+  write_layer(path, layer, dxf ? wkbLineString25D : wkbLineString, georef, options.overwrite, [&](LayerWriter& writer) {
+    writer.field("elev", OFTReal);
+    writer.field("index", OFTInteger);
+    writer.field("closed", OFTInteger);
+    std::size_t done = 0;
+    for (const ContourLine& line : set.lines) {
+      if (++done % 1024 == 0) {
+        context.check();
+        context.report("write", static_cast<double>(done) / static_cast<double>(set.lines.size()));
+      }
+      const double height = set.levels[static_cast<std::size_t>(line.level)];
+      const bool index = is_index_level(set.levels, line.level, options);
+      OGRLineString geometry;
+      const std::size_t n = line.end - line.begin, count = n + (line.closed ? 1 : 0);
+      geometry.setNumPoints(static_cast<int>(count), FALSE);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 p = georef.to_crs(set.points[line.begin + i % n]);
+        if (dxf)
+          geometry.setPoint(static_cast<int>(i), p.x, p.y, height);
+        else
+          geometry.setPoint(static_cast<int>(i), p.x, p.y);
+      }
+      writer.add(geometry, [&](OGRFeature& feature) {
+        if (dxf) {
+          feature.SetField("Layer", index ? "contour_index" : "contour");
+        } else {
+          feature.SetField("elev", height);
+          feature.SetField("index", index ? 1 : 0);
+          feature.SetField("closed", line.closed ? 1 : 0);
+        }
+      });
+      if (!writer.ok()) return;
+    }
+  });
+}
+
+void write_bands(const BandSet& bands, const Georef& georef, const std::string& path, const VectorOptions& options,
+                 const Context& context) {
+  const std::string driver = driver_of(path);
+  if (driver == "DXF")
+    throw CannotWrite(fmt::format("'{}': DXF has no polygons: use .gpkg, .geojson or .shp", path), path);
+  const std::string layer = driver == "ESRI Shapefile" ? stem_of(path) : "bands";
+  write_layer(path, layer, wkbPolygon, georef, options.overwrite, [&](LayerWriter& writer) {
+    writer.field("band", OFTInteger);
+    writer.field("elev_min", OFTReal);
+    writer.field("elev_max", OFTReal);
+    for (const BandPolygon& polygon : bands.polygons) {
+      context.check();
+      OGRPolygon geometry;
+      OGRLinearRing ring;
+      append(ring, polygon.outer.points, georef);
+      geometry.addRing(&ring);
+      for (const BandRing& hole : polygon.holes) {
+        OGRLinearRing inner;
+        append(inner, hole.points, georef);
+        geometry.addRing(&inner);
+      }
+      writer.add(geometry, [&](OGRFeature& feature) {
+        feature.SetField("band", polygon.band);
+        const auto band = static_cast<std::size_t>(polygon.band);
+        if (band > 0) feature.SetField("elev_min", bands.levels[band - 1]);
+        if (band < bands.levels.size()) feature.SetField("elev_max", bands.levels[band]);
+      });
+      if (!writer.ok()) return;
+    }
+  });
+}
+
+}  // namespace retalho

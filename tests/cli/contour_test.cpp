@@ -1,0 +1,110 @@
+// retalho contour from the command line.
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+
+#include "program.h"
+
+namespace retalho::test {
+namespace {
+
+struct Hills : ScratchFolder {
+  Hills() { put("dem.asc", ascii_grid(40, 30, hills)); }
+};
+
+struct Close {
+  void operator()(GDALDataset* d) const { GDALClose(d); }
+};
+using Dataset = std::unique_ptr<GDALDataset, Close>;
+
+Dataset open(const std::string& path) {
+  GDALAllRegister();
+  return Dataset(static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr)));
+}
+
+TEST(Contour, LinesInEveryFormat) {
+  const Hills folder;
+  GIntBig features = 0;
+  for (const char* ending : {"gpkg", "geojson", "shp", "dxf"}) {
+    const Outcome outcome = run(folder, fmt::format("contour dem.asc -o lines.{} --interval 20 --json", ending));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto json = outcome.json();
+    EXPECT_GT(json["lines"].get<int>(), 5);
+    EXPECT_TRUE(json["singular"].is_array());
+    const Dataset dataset = open(folder / fmt::format("lines.{}", ending));
+    ASSERT_TRUE(dataset) << ending;
+    OGRLayer* layer = dataset->GetLayer(0);
+    ASSERT_NE(layer, nullptr);
+    EXPECT_EQ(layer->GetFeatureCount(), json["lines"].get<GIntBig>()) << ending;
+    features += layer->GetFeatureCount();
+    if (std::string(ending) == "dxf") continue;
+    for (auto& feature : *layer) {
+      const double elev = feature->GetFieldAsDouble("elev");
+      EXPECT_EQ(std::fmod(elev, 20), 0);
+      EXPECT_EQ(feature->GetFieldAsInteger("index"), std::fmod(elev, 100) == 0 ? 1 : 0);
+      const OGRLineString* line = feature->GetGeometryRef()->toLineString();
+      EXPECT_EQ(line->get_IsClosed(), feature->GetFieldAsInteger("closed") == 1);
+      EXPECT_GE(line->getX(0), 1005);
+      EXPECT_LE(line->getX(0), 1395);
+    }
+  }
+  EXPECT_GT(features, 0);
+}
+
+TEST(Contour, BandsCoverTheGrid) {
+  const Hills folder;
+  ASSERT_EQ(run(folder, "contour dem.asc -o bands.gpkg --interval 20 --bands").code, 0);
+  const Dataset dataset = open(folder / "bands.gpkg");
+  ASSERT_TRUE(dataset);
+  double area = 0;
+  for (auto& feature : *dataset->GetLayer(0)) {
+    EXPECT_TRUE(feature->GetGeometryRef()->IsValid());
+    area += feature->GetGeometryRef()->toPolygon()->get_Area();
+  }
+  EXPECT_NEAR(area, 390.0 * 290.0, 1e-6 * 390 * 290);
+}
+
+TEST(Contour, ModelsAndPointsToo) {
+  const Hills folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 2").code, 0);
+  EXPECT_EQ(run(folder, "contour m.retalho -o m.gpkg --interval 20").code, 0);
+  EXPECT_EQ(run(folder, "contour dem.asc -o ps.gpkg --interval 20 --surface powell-sabin --max-error 2").code, 0);
+  std::string xyz;
+  for (int i = 0; i < 200; ++i) xyz += fmt::format("{} {} {}\n", (i * 37) % 101, (i * 53) % 97, (i * 29) % 31);
+  folder.put("points.xyz", xyz);
+  const Outcome outcome = run(folder, "contour points.xyz -o p.geojson --interval 5 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GT(outcome.json()["lines"].get<int>(), 0);
+}
+
+TEST(Contour, NoLevelInReachGivesALayerWithoutFeatures) {
+  const Hills folder;
+  const Outcome outcome = run(folder, "contour dem.asc -o none.gpkg --levels 5000");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no features"), std::string::npos);
+  const Dataset dataset = open(folder / "none.gpkg");
+  ASSERT_TRUE(dataset);
+  EXPECT_EQ(dataset->GetLayer(0)->GetFeatureCount(), 0);
+}
+
+TEST(Contour, RefusesWithAMessageAndLeavesNothing) {
+  const Hills folder;
+  const std::size_t before = folder.entries();
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --interval 20 --levels 1").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --levels 1,b").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --interval 1e-9").code, 3);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.tif --interval 20").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.dxf --interval 20 --bands").code, 5);
+  EXPECT_EQ(run(folder, "contour dem.asc -o nowhere/x.gpkg --interval 20").code, 5);
+  EXPECT_EQ(run(folder, "contour missing.asc -o x.gpkg --interval 20").code, 4);
+  EXPECT_EQ(folder.entries(), before);
+  ASSERT_EQ(run(folder, "contour dem.asc -o x.shp --interval 20").code, 0);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.shp --interval 20").code, 5);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.shp --interval 30 --overwrite").code, 0);
+}
+
+}  // namespace
+}  // namespace retalho::test
