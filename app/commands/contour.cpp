@@ -10,6 +10,7 @@
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/level/write_vector.h"
+#include "retalho/model/model.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/tin/refine.h"
 #include "retalho/tin/scattered.h"
