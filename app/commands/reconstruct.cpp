@@ -1,10 +1,13 @@
 // retalho reconstruct: points with normals to a TetraQuad surface.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "inputs.h"
+#include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/tetraquad_mesh.h"
 #include "retalho/tetraquad/fit.h"
@@ -17,9 +20,26 @@ const std::vector<std::string> kSplits{"five", "kuhn"};
 
 struct Options {
   std::string points, output, tetrahedra, split = "five";
-  int resolution = 32;
-  double tolerance = 0, smoothness = 1;
+  std::optional<int> resolution;
+  std::optional<double> max_error;
+  double quantile = 0.99, tolerance = 0, smoothness = 1;
+  int neighbours = 16;
 };
+
+/// Gives points without normals estimated ones, and says how sure they are.
+void complete_normals(const Program& program, PointCloud& cloud, int neighbours, std::vector<std::string>& warnings,
+                      const Context& context) {
+  const bool given = std::any_of(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& n) { return norm2(n) > 0; });
+  if (given && cloud.normals.size() == cloud.positions.size()) return;
+  NormalNotes notes;
+  cloud.normals = estimate_normals(cloud.positions, {.neighbours = neighbours}, &notes, context);
+  warnings.push_back(fmt::format(
+      "the points have no normals: estimated from {} neighbours; {:.2f} % of neighbouring normals agree, {} part{} turned "
+      "outwards by {} outermost points{}",
+      neighbours, 100 * notes.agreement, notes.parts, notes.parts == 1 ? "" : "s", notes.parts == 1 ? "its" : "their",
+      notes.agreement < 0.98 ? ": not sure, look at the result" : ""));
+  program.say("warning: " + warnings.back());
+}
 
 void run(const Program& program, const Options& options) {
   const std::size_t split = choose("--split", options.split, kSplits);
@@ -29,15 +49,24 @@ void run(const Program& program, const Options& options) {
   if (!options.tetrahedra.empty())
     check_output(program, options.tetrahedra, {".vtk"}, {options.points, options.output});
   const Context context = program.context();
-  const PointCloud cloud = load_points(program, options.points, {}, context);
+  PointCloud cloud = load_points(program, options.points, {}, context);
   const Stopwatch watch;
+  std::vector<std::string> warnings;
+  complete_normals(program, cloud, options.neighbours, warnings, context);
   TetraQuadFitOptions fit;
-  fit.resolution = options.resolution;
+  fit.resolution = options.resolution.value_or(32);
   fit.smoothness = options.smoothness;
   fit.split = split == 0 ? TetSplit::five : TetSplit::kuhn;
   TetraQuadFitReport report;
-  const TetraQuad surface = fit_tetraquad(cloud, fit, &report, context);
+  TetraQuadErrorOptions error;
+  error.max_error = options.max_error.value_or(0);
+  error.quantile = options.quantile;
+  if (options.resolution) error.finest = *options.resolution;
+  error.coarsest = std::min(error.coarsest, error.finest);
+  const TetraQuad surface = options.max_error ? fit_tetraquad_to(cloud, error, fit, &report, context)
+                                              : fit_tetraquad(cloud, fit, &report, context);
   for (const std::string& warning : report.warnings) program.say("warning: " + warning);
+  warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
   const TetraQuadField field(surface);
   TetraQuadMeshNotes notes;
   const TriangleMesh mesh = mesh_tetraquad(field, {.tolerance = options.tolerance}, &notes, context);
@@ -61,6 +90,7 @@ void run(const Program& program, const Options& options) {
     write_vtk(surface.mesh, values, options.tetrahedra, program.overwrite);
   }
   const nlohmann::ordered_json json = {{"points", report.points},
+                                       {"resolution", report.resolution},
                                        {"used", report.used},
                                        {"vertices", report.vertices},
                                        {"tetrahedra", report.tetrahedra},
@@ -72,13 +102,15 @@ void run(const Program& program, const Options& options) {
                                        {"borders", topology.borders},
                                        {"genus", topology.genus},
                                        {"residual_mean", report.residual_mean},
-                                       {"residual_99", report.residual_quantile},
+                                       {"residual_quantile", report.residual_quantile},
                                        {"residual_max", report.residual_max},
+                                       {"quantile", options.quantile},
+                                       {"outliers", report.outliers},
                                        {"triangles", mesh.triangles.size()},
                                        {"deviation", notes.deviation},
                                        {"bytes", std::filesystem::file_size(options.output)},
                                        {"seconds", seconds},
-                                       {"warnings", report.warnings}};
+                                       {"warnings", warnings}};
   if (program.json) return program.print(json);
   std::vector<std::pair<std::string, std::string>> lines;
   for (const auto& [key, value] : json.items())
@@ -93,14 +125,21 @@ void add_reconstruct(CLI::App& root, Program& program) {
   CLI::App* command = add_command(root, program, "reconstruct", "Points with normals to a smooth closed surface",
                                   "retalho reconstruct scan.ply -o surface.retalho\n"
                                   "retalho reconstruct scan.xyz --resolution 48 -o surface.glb --tolerance 0.01\n"
+                                  "retalho reconstruct scan.ply --max-error 0.05 -o surface.ply\n"
                                   "retalho reconstruct noisy.ply --smoothness 10 -o surface.obj --json");
   command->add_option("POINTS", options->points, "Points with normals: .ply, .xyz, .csv")->required()->type_name("");
   command->add_option("-o,--output", options->output, "The model (.retalho), or triangles: .ply, .obj, .stl, .glb")
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--resolution", options->resolution, "Cubes along the longest side of the points' box (default 32)")
+      ->add_option("--resolution", options->resolution, "Cubes along the longest side of the points' box (default 32; with --max-error: at most, 128)")
       ->type_name("N");
+  command->add_option("--max-error", options->max_error, "Refine until the points are this near to the surface")
+      ->type_name("E");
+  command->add_option("--quantile", options->quantile, "The share of the points that --max-error means (default 0.99)")
+      ->type_name("Q");
+  command->add_option("--neighbours", options->neighbours, "For normals, where the points have none (default 16)")
+      ->type_name("K");
   command->add_option("--smoothness", options->smoothness, "0.1 for clean points, 10 for noisy ones (default 1)")
       ->type_name("S");
   command

@@ -33,6 +33,26 @@ TEST(Reconstruct, ATorusAsAMeshAndItsReport) {
   EXPECT_EQ(folder.entries(), 3U);
 }
 
+TEST(Reconstruct, PointsWithoutNormalsGetThemWithAWarning) {
+  const ScratchFolder folder;
+  std::string text;
+  for (const Vec3& p : torus_points(5000, 7).positions) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+  folder.put("torus.xyz", text);
+  const Outcome outcome = run(folder, "reconstruct torus.xyz -o torus.retalho --max-error 0.002 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no normals"), std::string::npos);
+  EXPECT_EQ(outcome.json()["genus"], 1);
+  EXPECT_EQ(outcome.json()["open_edges"], 0);
+  EXPECT_LE(outcome.json()["residual_quantile"].get<double>(), 0.002);
+  const Outcome info = run(folder, "info torus.retalho --json");
+  EXPECT_EQ(info.json()["kind"], "tetraquad");
+  ASSERT_EQ(run(folder, "mesh torus.retalho -o torus.stl --tolerance 0.001").code, 0);
+  ASSERT_EQ(run(folder, "render torus.retalho -o torus.png --size 200x200 --cut 'x<0' --outlines --jumps").code, 0);
+  EXPECT_EQ(run(folder, "render torus.retalho -o other.png --cut 'q<0'").code, 2);
+  EXPECT_EQ(run(folder, "sample torus.retalho -o torus.tif --resolution 1").code, 3);
+  EXPECT_EQ(folder.entries(), 4U);
+}
+
 TEST(Reconstruct, SaysWhatIsWrong) {
   const ScratchFolder folder;
   folder.put("torus.xyz", xyz_of(torus_points(500, 7)));

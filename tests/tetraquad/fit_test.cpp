@@ -138,6 +138,49 @@ TEST(Fit, MillimetresAtFiveMillion) {
   for (const Vec3& p : mesh.positions) EXPECT_NEAR(norm(p - far), 2, 1e-5);
 }
 
+TEST(Fit, RefinesUntilThePointsAreWithin) {
+  PointCloud cloud = torus_points(8000, 6);
+  for (int n = 0; n < 20; ++n) {  // outliers, 0.25 %
+    cloud.positions.push_back({0.01 * n, 0, 0.02});
+    cloud.normals.push_back({0, 0, 1});
+  }
+  TetraQuadFitReport report;
+  fit_tetraquad_to(cloud, {.max_error = 2e-3, .coarsest = 4}, {}, &report);
+  EXPECT_LE(report.residual_quantile, 2e-3);
+  EXPECT_TRUE(report.warnings.empty());
+  EXPECT_LT(report.outliers, 80U);
+  TetraQuadFitReport coarser;
+  if (report.resolution > 4) {
+    const int before = report.resolution == 6 ? 4 : report.resolution * 2 / 3;
+    fit_tetraquad_to(cloud, {.max_error = 2e-3, .coarsest = 4, .finest = before}, {}, &coarser);
+    EXPECT_GT(coarser.residual_quantile, 2e-3);
+    EXPECT_EQ(coarser.warnings.size(), 1U);
+  }
+  EXPECT_THROW(fit_tetraquad_to(cloud, {.max_error = 0}), UsageError);
+  EXPECT_THROW(fit_tetraquad_to(cloud, {.max_error = 1, .quantile = 2}), UsageError);
+}
+
+TEST(Fit, SheetsThatNoPointAsksForAreNotThereAndHolesClose) {
+  // A sphere with a bald patch of about a cube's width: it closes, and nothing else appears.
+  PointCloud cloud = sphere_points(8000, {0, 0, 0}, 1);
+  PointCloud bald;
+  for (std::size_t k = 0; k < cloud.positions.size(); ++k) {
+    if (norm(cloud.positions[k] - Vec3{0, 0, 1}) < 0.15) continue;
+    bald.positions.push_back(cloud.positions[k]);
+    bald.normals.push_back(cloud.normals[k]);
+  }
+  ASSERT_LT(bald.positions.size(), 7980U);
+  TetraQuadFitReport report;
+  const TetraQuad surface = fit_tetraquad(bald, {.resolution = 12}, &report);
+  EXPECT_EQ(report.open_faces, 0U);
+  const TriangleMesh mesh = mesh_tetraquad(TetraQuadField(surface));
+  const MeshTopology topology = topology_of(mesh);
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_EQ(topology.open_edges, 0U);
+  EXPECT_EQ(topology.genus, 0);
+  for (const Vec3& p : mesh.positions) EXPECT_NEAR(norm(p), 1, 0.02);
+}
+
 TEST(BlockCholesky, SolvesWhatADenseTwinSolves) {
   test::Random random(22);
   for (const std::size_t rows : {1U, 7U, 40U}) {

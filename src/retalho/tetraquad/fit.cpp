@@ -139,7 +139,8 @@ void solve(TetraQuad& surface, const HalfFaces& faces, const std::vector<Sample>
     std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(kBlock * v), kBlock, surface.quadrics[v].begin());
 }
 
-void measure(const TetraQuadField& field, const std::vector<Sample>& samples, TetraQuadFitReport& report) {
+void measure(const TetraQuadField& field, const std::vector<Sample>& samples, const TetraQuadErrorOptions& error,
+             TetraQuadFitReport& report) {
   const TetMesh& mesh = field.surface().mesh;
   report.vertices = mesh.lattice.size();
   report.tetrahedra = mesh.tets.size();
@@ -163,15 +164,18 @@ void measure(const TetraQuadField& field, const std::vector<Sample>& samples, Te
   std::sort(residuals.begin(), residuals.end());
   report.residual_mean = sum / static_cast<double>(residuals.size());
   report.residual_max = residuals.back();
-  report.residual_quantile = residuals[(residuals.size() - 1) * 99 / 100];
+  const auto last = static_cast<double>(residuals.size());
+  report.residual_quantile = residuals[static_cast<std::size_t>(std::max(1.0, std::ceil(error.quantile * last))) - 1];
+  if (error.max_error > 0)
+    report.outliers = static_cast<std::size_t>(residuals.end() -
+                                               std::upper_bound(residuals.begin(), residuals.end(), error.max_error));
 }
 
-}  // namespace
-
-TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport* report_out,
-                        const Context& context) {
+TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const TetraQuadErrorOptions& error,
+              TetraQuadFitReport* report_out, const Context& context) {
   check_options(options);
   TetraQuadFitReport report;
+  report.resolution = options.resolution;
   const Samples samples = take_samples(cloud, options, report);
   std::size_t cells = 0;
   std::vector<TetPlace> band = first_band(samples, options.split, cells);
@@ -200,9 +204,43 @@ TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& opti
   report.growth_rounds = grow(surface, faces, data, kReach, options.growth, weights, context);
   report.stray += drop_stray(surface, faces, with_points);
   report.open_faces = open_faces(surface, faces).size();
-  measure(TetraQuadField(surface), sorted_samples(samples, surface.mesh), report);
+  measure(TetraQuadField(surface), sorted_samples(samples, surface.mesh), error, report);
   if (report_out != nullptr) *report_out = std::move(report);
   return surface;
+}
+
+}  // namespace
+
+TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport* report,
+                        const Context& context) {
+  return fit(cloud, options, {}, report, context);
+}
+
+TetraQuad fit_tetraquad_to(const PointCloud& cloud, const TetraQuadErrorOptions& error,
+                           const TetraQuadFitOptions& options, TetraQuadFitReport* report_out, const Context& context) {
+  if (!(error.max_error > 0) || !std::isfinite(error.max_error))
+    throw UsageError("--max-error must be above 0", {}, "--max-error");
+  if (!(error.quantile > 0 && error.quantile <= 1))
+    throw UsageError("the share of the points that must be within lies above 0 and at most at 1", {}, "--quantile");
+  if (error.coarsest < 2 || error.finest < error.coarsest || error.finest > 1000)
+    throw UsageError("resolutions go from 2 to 1000, the finest not below the coarsest", {}, "--resolution");
+  TetraQuadFitOptions now = options;
+  now.resolution = error.coarsest;
+  while (true) {
+    TetraQuadFitReport report;
+    TetraQuad surface = fit(cloud, now, error, &report, context);
+    const bool reached = report.residual_quantile <= error.max_error;
+    if (reached || now.resolution >= error.finest) {
+      if (!reached)
+        report.warnings.push_back(
+            fmt::format("{:.4g} is not reached at resolution {}: {:.4g} % of the points are within {:.4g}; a finer "
+                        "--resolution may do, or the points are noisier than that",
+                        error.max_error, now.resolution, 100 * error.quantile, report.residual_quantile));
+      if (report_out != nullptr) *report_out = std::move(report);
+      return surface;
+    }
+    now.resolution = std::min(error.finest, now.resolution + std::max(1, now.resolution / 2));
+  }
 }
 
 }  // namespace retalho
