@@ -10,7 +10,7 @@ namespace retalho {
 
 struct BlockCholesky::Parts {
   std::vector<Supernode> nodes;
-  /// Per node: the columns of its pivots, column-major, rows: pivots, then border.
+  /// Per node: the columns of its pivots one after the other, each from its diagonal on; rows: pivots, then border.
   std::vector<std::vector<double>> columns;
   std::size_t numbers = 0;
 };
@@ -24,15 +24,15 @@ void place_block(double* front, std::size_t n, std::size_t r, std::size_t c, con
       front[(kBlock * c + j) * n + kBlock * r + i] += transposed ? value[10 * j + i] : value[10 * i + j];
 }
 
-/// A child's share of the rest, added to its parent's front at the blocks `at`.
-void extend_add(double* front, std::size_t n, const std::vector<double>& share, const std::vector<std::size_t>& at) {
-  const std::size_t m = kBlock * at.size();
+/// A child's share of the rest (columns one after the other, each from its diagonal on), added to its parent's front at
+/// the blocks `at`.
+void extend_add(double* front, std::size_t n, const double* share, const std::vector<std::size_t>& at) {
   for (std::size_t c = 0; c < at.size(); ++c)
     for (std::size_t j = 0; j < kBlock; ++j) {
-      const double* from = share.data() + (kBlock * c + j) * m;
       double* column = front + (kBlock * at[c] + j) * n;
-      for (std::size_t r = c; r < at.size(); ++r)
-        for (std::size_t i = 0; i < kBlock; ++i) column[kBlock * at[r] + i] += from[kBlock * r + i];
+      for (std::size_t i = j; i < kBlock; ++i) column[kBlock * at[c] + i] += *share++;
+      for (std::size_t r = c + 1; r < at.size(); ++r, share += kBlock)
+        for (std::size_t i = 0; i < kBlock; ++i) column[kBlock * at[r] + i] += share[i];
     }
 }
 
@@ -49,8 +49,10 @@ BlockCholesky::BlockCholesky(const BlockMatrix& matrix, const Context& context) 
   }
   constexpr std::size_t absent = ~std::size_t{0};
   std::vector<std::size_t> local(matrix.rows(), absent), at;
-  std::vector<std::vector<double>> shares(nodes.size());
-  std::vector<double> front;
+  // What children leave for their parents is a stack, since they come right before them.
+  std::vector<double> shares, front;
+  std::vector<std::size_t> share_start(nodes.size(), 0);
+  std::size_t top = 0;
   parts_->columns.resize(nodes.size());
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     context.check();
@@ -59,7 +61,8 @@ BlockCholesky::BlockCholesky(const BlockMatrix& matrix, const Context& context) 
     for (const std::uint32_t v : node.pivots) local[v] = count++;
     for (const std::uint32_t v : node.border) local[v] = count++;
     const std::size_t n = kBlock * count, pivots = kBlock * node.pivots.size();
-    front.assign(n * n, 0.0);
+    if (front.size() < n * n) front.resize(n * n);
+    for (std::size_t c = 0; c < n; ++c) std::fill_n(front.data() + c * n + c, n - c, 0.0);
     for (std::size_t c = 0; c < node.pivots.size(); ++c) {
       const std::uint32_t v = node.pivots[c];
       const auto row = matrix.columns(v);
@@ -70,22 +73,26 @@ BlockCholesky::BlockCholesky(const BlockMatrix& matrix, const Context& context) 
         if (local[w] != absent && local[w] > c) place_block(front.data(), n, local[w], c, value, false);
     }
     for (const std::int32_t child : node.children) {
-      std::vector<double>& share = shares[static_cast<std::size_t>(child)];
       at.clear();
       for (const std::uint32_t v : nodes[static_cast<std::size_t>(child)].border) at.push_back(local[v]);
-      extend_add(front.data(), n, share, at);
-      std::vector<double>().swap(share);
+      extend_add(front.data(), n, shares.data() + share_start[static_cast<std::size_t>(child)], at);
     }
+    if (!node.children.empty()) top = share_start[static_cast<std::size_t>(node.children.front())];
     if (!factor_front(front.data(), n, pivots))
       throw Error(Error::Kind::internal,
                   "the fit's matrix is not positive definite: raise the smoothness or the ridge");
-    parts_->columns[k].assign(front.begin(), front.begin() + static_cast<std::ptrdiff_t>(n * pivots));
-    parts_->numbers += n * pivots;
+    std::vector<double>& columns = parts_->columns[k];
+    columns.reserve(pivots * n - pivots * (pivots - 1) / 2);
+    for (std::size_t c = 0; c < pivots; ++c)
+      columns.insert(columns.end(), front.begin() + static_cast<std::ptrdiff_t>(c * n + c),
+                     front.begin() + static_cast<std::ptrdiff_t>((c + 1) * n));
+    parts_->numbers += columns.size();
+    share_start[k] = top;
     const std::size_t rest = n - pivots;
-    if (rest > 0) {
-      shares[k].resize(rest * rest);
-      for (std::size_t c = 0; c < rest; ++c)
-        std::copy_n(front.data() + (pivots + c) * n + pivots + c, rest - c, shares[k].data() + c * rest + c);
+    if (shares.size() < top + rest * (rest + 1) / 2) shares.resize(top + rest * (rest + 1) / 2);
+    for (std::size_t c = pivots; c < n; ++c) {
+      std::copy_n(front.data() + c * n + c, n - c, shares.data() + top);
+      top += n - c;
     }
     for (const std::uint32_t v : node.pivots) local[v] = absent;
     for (const std::uint32_t v : node.border) local[v] = absent;
@@ -119,21 +126,23 @@ void BlockCholesky::solve(std::span<double> x) const {
   for (std::size_t k = 0; k < parts_->nodes.size(); ++k) {
     gather(parts_->nodes[k]);
     const std::size_t n = part.size(), pivots = kBlock * parts_->nodes[k].pivots.size();
+    const double* column = parts_->columns[k].data();
     for (std::size_t c = 0; c < pivots; ++c) {
-      const double* column = parts_->columns[k].data() + c * n;
-      const double value = part[c] /= column[c];
-      for (std::size_t r = c + 1; r < n; ++r) part[r] -= column[r] * value;
+      const double value = part[c] /= column[0];
+      for (std::size_t r = 1; r < n - c; ++r) part[c + r] -= column[r] * value;
+      column += n - c;
     }
     scatter(parts_->nodes[k]);
   }
   for (std::size_t k = parts_->nodes.size(); k-- > 0;) {
     gather(parts_->nodes[k]);
     const std::size_t n = part.size(), pivots = kBlock * parts_->nodes[k].pivots.size();
+    const double* column = parts_->columns[k].data() + parts_->columns[k].size();
     for (std::size_t c = pivots; c-- > 0;) {
-      const double* column = parts_->columns[k].data() + c * n;
+      column -= n - c;
       double value = part[c];
-      for (std::size_t r = c + 1; r < n; ++r) value -= column[r] * part[r];
-      part[c] = value / column[c];
+      for (std::size_t r = 1; r < n - c; ++r) value -= column[r] * part[c + r];
+      part[c] = value / column[0];
     }
     scatter(parts_->nodes[k]);
   }

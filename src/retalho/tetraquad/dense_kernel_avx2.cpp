@@ -1,0 +1,9 @@
+#if defined(__x86_64__)
+#include "retalho/tetraquad/dense_kernel.h"
+
+#define RETALHO_LANES 4
+#define RETALHO_ROWS 2
+#define RETALHO_COLUMNS 6
+#define RETALHO_KERNEL dense_product_avx2
+#include "retalho/tetraquad/dense_kernel.inc"
+#endif
