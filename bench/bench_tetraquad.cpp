@@ -97,7 +97,8 @@ class NearestPlane {
 
  private:
   const PointCloud& cloud_;
-  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, NearestPlane>, NearestPlane, 3, std::uint32_t>
+  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, NearestPlane>, NearestPlane, 3,
+                                      std::uint32_t>
       tree_;
 };
 
@@ -178,7 +179,8 @@ std::vector<Ray> camera_rays(Vec3 middle, double radius) {
   for (int view = 0; view < 4; ++view) {
     const double a = view * std::numbers::pi / 2 + 0.3;
     const Vec3 eye = middle + radius * Vec3{3 * std::cos(a), 0.7, 3 * std::sin(a)};
-    const Vec3 ahead = normalized(middle - eye), right = normalized(Vec3{-ahead.z, 0, ahead.x}), up = cross(right, ahead);
+    const Vec3 ahead = normalized(middle - eye), right = normalized(Vec3{-ahead.z, 0, ahead.x}),
+               up = cross(right, ahead);
     for (int y = 0; y < 512; ++y)
       for (int x = 0; x < 512; ++x)
         rays.push_back({eye, ahead + ((x + 0.5) / 512 - 0.5) * 0.6 * right + ((y + 0.5) / 512 - 0.5) * 0.6 * up});
@@ -222,8 +224,8 @@ class Triangles {
     scene_ = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* at = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                                           mesh.positions.size()));
+    auto* at = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size()));
     for (const Vec3& p : mesh.positions)
       for (const double c : {p.x, p.y, p.z}) *at++ = static_cast<float>(c);
     auto* index = static_cast<unsigned*>(
@@ -301,8 +303,10 @@ Values run_rays() {
     const std::vector<Ray> all = is_camera ? camera_rays(middle, radius) : random_chords(middle, radius);
     const std::string name = is_camera ? "camera" : "random";
     double share = 0, triangle_share = 0;
-    const double ours = speed(all, [&](const Ray& r) { return rays.first(r.origin, r.direction).has_value(); }, &share);
-    const double peer = speed(all, [&](const Ray& r) { return triangles.cast(r); }, &triangle_share);
+    const double ours = speed(
+        all, [&](const Ray& r) { return rays.first(r.origin, r.direction).has_value(); }, &share);
+    const double peer = speed(
+        all, [&](const Ray& r) { return triangles.cast(r); }, &triangle_share);
     values[name] = ours;
     values[name + "_triangles"] = peer;
     values[name + "_ratio"] = ours / peer;
@@ -318,13 +322,15 @@ int main(int argc, char** argv) {
   const std::string wanted = argc > 2 && std::string(argv[1]) == "--value" ? argv[2] : "";
   if (!wanted.empty()) {
     const std::string name = wanted.substr(0, wanted.find(':')), what = wanted.substr(wanted.find(':') + 1);
-    const double value = wanted == "rays:misses" ? count_misses() : (name == "rays" ? run_rays() : run_case(name)).at(what);
+    const double value =
+        wanted == "rays:misses" ? count_misses() : (name == "rays" ? run_rays() : run_case(name)).at(what);
     fmt::print("{{\"value\": {:.6g}}}\n", value);
     return 0;
   }
   for (const std::string name : {"torus8", "torus16", "bunny24", "bunny32", "bunny48", "noise02", "noise05", "rays"}) {
     fmt::print("{}\n", name);
-    for (const auto& [what, value] : name == "rays" ? run_rays() : run_case(name)) fmt::print("  {:<24}{:.6g}\n", what, value);
+    for (const auto& [what, value] : name == "rays" ? run_rays() : run_case(name))
+      fmt::print("  {:<24}{:.6g}\n", what, value);
   }
   fmt::print("rays that leave a closed torus, of 3 million: {}\n", count_misses());
   return 0;

@@ -29,15 +29,17 @@ struct Options {
 /// Gives points without normals estimated ones, and says how sure they are.
 void complete_normals(const Program& program, PointCloud& cloud, int neighbours, std::vector<std::string>& warnings,
                       const Context& context) {
-  const bool given = std::any_of(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& n) { return norm2(n) > 0; });
+  const bool given =
+      std::any_of(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& n) { return norm2(n) > 0; });
   if (given && cloud.normals.size() == cloud.positions.size()) return;
   NormalNotes notes;
   cloud.normals = estimate_normals(cloud.positions, {.neighbours = neighbours}, &notes, context);
-  warnings.push_back(fmt::format(
-      "the points have no normals: estimated from {} neighbours; {:.2f} % of neighbouring normals agree, {} part{} turned "
-      "outwards by {} outermost points{}",
-      neighbours, 100 * notes.agreement, notes.parts, notes.parts == 1 ? "" : "s", notes.parts == 1 ? "its" : "their",
-      notes.agreement < 0.98 ? ": not sure, look at the result" : ""));
+  warnings.push_back(
+      fmt::format("the points have no normals: estimated from {} neighbours; {:.2f} % of neighbouring normals agree, "
+                  "{} part{} turned "
+                  "outwards by {} outermost points{}",
+                  neighbours, 100 * notes.agreement, notes.parts, notes.parts == 1 ? "" : "s",
+                  notes.parts == 1 ? "its" : "their", notes.agreement < 0.98 ? ": not sure, look at the result" : ""));
   program.say("warning: " + warnings.back());
 }
 
@@ -132,7 +134,8 @@ void add_reconstruct(CLI::App& root, Program& program) {
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--resolution", options->resolution, "Cubes along the longest side of the points' box (default 32; with --max-error: at most, 128)")
+      ->add_option("--resolution", options->resolution,
+                   "Cubes along the longest side of the points' box (default 32; with --max-error: at most, 128)")
       ->type_name("N");
   command->add_option("--max-error", options->max_error, "Refine until the points are this near to the surface")
       ->type_name("E");

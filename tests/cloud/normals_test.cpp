@@ -58,7 +58,8 @@ TEST(Normals, DoNotDependOnThreadsNorOnDoubles) {
 TEST(Normals, WhatCannotBeKnownIsZero) {
   NormalNotes notes;
   EXPECT_TRUE(estimate_normals({}, {}, &notes).empty());
-  const std::vector<Vec3> line = estimate_normals({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {NAN, 0, 0}}, {}, &notes);
+  const std::vector<Vec3> line =
+      estimate_normals({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {NAN, 0, 0}}, {}, &notes);
   EXPECT_EQ(notes.undecided, 5U);
   EXPECT_EQ(line[0], Vec3{});
   EXPECT_THROW(estimate_normals({}, {.neighbours = 2}), UsageError);

@@ -26,7 +26,8 @@ struct Points {
     return false;
   }
 };
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>;
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>;
 
 struct Link {
   float cost;
@@ -186,16 +187,19 @@ class Estimate {
 
 }  // namespace
 
-std::vector<Vec3> estimate_normals(const std::vector<Vec3>& positions, const NormalOptions& options, NormalNotes* notes_out,
-                                   const Context& context) {
+std::vector<Vec3> estimate_normals(const std::vector<Vec3>& positions, const NormalOptions& options,
+                                   NormalNotes* notes_out, const Context& context) {
   if (options.neighbours < 3 || options.neighbours > 200)
     throw UsageError("normals are estimated from 3 to 200 neighbours", {}, "--neighbours");
   NormalNotes notes;
   // Every place once, in the order of its first point.
   std::vector<std::uint32_t> order;
   for (std::uint32_t k = 0; k < positions.size(); ++k)
-    if (std::isfinite(positions[k].x) && std::isfinite(positions[k].y) && std::isfinite(positions[k].z)) order.push_back(k);
-  const auto key = [&](std::uint32_t k) { return std::array<double, 3>{positions[k].x, positions[k].y, positions[k].z}; };
+    if (std::isfinite(positions[k].x) && std::isfinite(positions[k].y) && std::isfinite(positions[k].z))
+      order.push_back(k);
+  const auto key = [&](std::uint32_t k) {
+    return std::array<double, 3>{positions[k].x, positions[k].y, positions[k].z};
+  };
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     const auto ka = key(a), kb = key(b);
     return ka != kb ? ka < kb : a < b;

@@ -151,11 +151,9 @@ void BlockCholesky::solve(std::span<double> x) const {
 void solve_past_ridge(const BlockCholesky& factors, double ridge, std::span<double> x) {
   factors.solve(x);
   std::vector<double> step(x.begin(), x.end());
-  for (int n = 0; n < 2; ++n) {
-    for (double& value : step) value *= ridge;
-    factors.solve(step);
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] += step[k];
-  }
+  for (double& value : step) value *= ridge;
+  factors.solve(step);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] += step[k];
 }
 
 }  // namespace retalho

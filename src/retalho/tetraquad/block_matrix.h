@@ -67,7 +67,7 @@ class BlockCholesky {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Solves with the factors of A + ridge, then takes the ridge's pull off by two proximal steps: what A determines comes
+/// Solves with the factors of A + ridge, then takes the ridge's pull off by a proximal step: what A determines comes
 /// out as A says, what it leaves open stays small.
 void solve_past_ridge(const BlockCholesky& factors, double ridge, std::span<double> x);
 

@@ -6,8 +6,8 @@
 
 namespace retalho {
 
-/// C = A B' (replace) or C -= A B', everything column-major; A: m x k, B: n x k, C: m x n. With `lower`, what lies above
-/// C's diagonal is not worked out (it may be overwritten). C may be A: all of A is read first.
+/// C = A B' (replace) or C -= A B', everything column-major; A: m x k, B: n x k, C: m x n. With `lower`, what lies
+/// above C's diagonal is not worked out (it may be overwritten). C may be A: all of A is read first.
 struct DenseProduct {
   const double* a;
   std::size_t m, lda;

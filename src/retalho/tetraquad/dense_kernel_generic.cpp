@@ -5,4 +5,3 @@
 #define RETALHO_COLUMNS 4
 #define RETALHO_KERNEL dense_product_generic
 #include "retalho/tetraquad/dense_kernel.inc"
-

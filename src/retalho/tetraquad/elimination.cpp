@@ -62,7 +62,7 @@ Lists symbolic(const Lists& adjacent, const std::vector<std::uint32_t>& order) {
 bool worth_joining(std::size_t child_pivots, std::size_t child_border, std::size_t pivots, std::size_t border) {
   const auto zeros = static_cast<double>(child_pivots * (pivots + border - child_border));
   const auto all = static_cast<double>(child_pivots * (child_pivots + pivots + border) + pivots * (pivots + border));
-  return zeros <= (child_pivots + pivots <= 4 ? 0.2 : 0.02) * all;
+  return zeros <= (child_pivots + pivots <= 2 ? 0.1 : 0.01) * all;
 }
 
 }  // namespace

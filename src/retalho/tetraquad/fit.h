@@ -28,10 +28,10 @@ struct TetraQuadFitOptions {
 
 /// Refine until the points are near enough.
 struct TetraQuadErrorOptions {
-  double max_error = 0;          ///< distance, the points' unit; above 0
-  double quantile = 0.99;        ///< the share of the points that must be within, above 0, at most 1
-  int coarsest = 8;              ///< the first resolution; each next one is half as much again
-  int finest = 128;              ///< the last
+  double max_error = 0;    ///< distance, the points' unit; above 0
+  double quantile = 0.99;  ///< the share of the points that must be within, above 0, at most 1
+  int coarsest = 8;        ///< the first resolution; each next one is half as much again
+  int finest = 128;        ///< the last
 };
 
 struct TetraQuadFitReport {
@@ -45,10 +45,10 @@ struct TetraQuadFitReport {
   std::size_t stray = 0;                       ///< tetrahedra dropped with sheets that no point asks for
   std::size_t open_faces = 0;                  ///< border faces that the surface still meets (0: it is closed)
   double residual_mean = 0, residual_max = 0;  ///< of |C| / |grad C| at the points, lengths
-  double residual_quantile = 0;  ///< 99 % of the points are within (or what TetraQuadErrorOptions asked for)
-  int resolution = 0;            ///< that was worked with
-  std::size_t outliers = 0;      ///< points beyond max_error, where one was asked for
-  std::vector<std::string> warnings;           ///< sentences for the user
+  double residual_quantile = 0;       ///< 99 % of the points are within (or what TetraQuadErrorOptions asked for)
+  int resolution = 0;                 ///< that was worked with
+  std::size_t outliers = 0;           ///< points beyond max_error, where one was asked for
+  std::vector<std::string> warnings;  ///< sentences for the user
 };
 
 /// The surface with C ~ signed distance, negative inside (against the normals).
@@ -60,9 +60,9 @@ struct TetraQuadFitReport {
 TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& options = {},
                         TetraQuadFitReport* report = nullptr, const Context& context = {});
 
-/// The coarsest of the resolutions of `error` at which the surface is within max_error of the asked share of the points;
-/// options.resolution is not used. Where even the finest does not do, that one, with a warning. Outliers are counted.
-/// Throws UsageError for options out of range, and as fit_tetraquad does.
+/// The coarsest of the resolutions of `error` at which the surface is within max_error of the asked share of the
+/// points; options.resolution is not used. Where even the finest does not do, that one, with a warning. Outliers are
+/// counted. Throws UsageError for options out of range, and as fit_tetraquad does.
 TetraQuad fit_tetraquad_to(const PointCloud& cloud, const TetraQuadErrorOptions& error,
                            const TetraQuadFitOptions& options = {}, TetraQuadFitReport* report = nullptr,
                            const Context& context = {});

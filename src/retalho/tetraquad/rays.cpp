@@ -47,7 +47,7 @@ double bracketed_root(const std::array<double, 4>& b, double low, double high, d
       if (f == 0) return s;
       next = 0.5 * (low + high);
     }
-    if (std::abs(next - s) < 1e-14) return next;
+    if (std::abs(next - s) < 1e-10) return next;  // the step after it would be the square of this
     s = next;
   }
   return s;
@@ -128,15 +128,12 @@ void intersect(const Prim& prim, std::uint32_t number, Query& query) {
       prim.offset + prim.axis[0] * query.origin[0] + prim.axis[1] * query.origin[1] + prim.axis[2] * query.origin[2];
   const Four d =
       prim.axis[0] * query.direction[0] + prim.axis[1] * query.direction[1] + prim.axis[2] * query.direction[2];
+  // Where the ray passes the planes of the faces; for one that runs along a plane, +-infinity says on which side.
+  const Four steady = d + 0.0, at = -o / steady;
   double t0 = query.from, t1 = query.best;
   for (int i = 0; i < 4; ++i) {
-    const double t = -o[i] / d[i];
-    if (d[i] > 0)
-      t0 = std::max(t0, t);
-    else if (d[i] < 0)
-      t1 = std::min(t1, t);
-    else if (o[i] < -kOverlap)
-      return;
+    t0 = std::max(t0, steady[i] >= 0 ? at[i] : t0);
+    t1 = std::min(t1, steady[i] < 0 ? at[i] : t1);
   }
   const double margin = kOverlap * (1 + std::abs(t1));
   if (!(t0 <= t1 + margin)) return;
@@ -229,6 +226,24 @@ struct TetraQuadRays::Parts {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
+  double near = 0;  ///< so far from the middle single precision does
+
+  /// The part of the ray in the box of all; false: none.
+  bool clip(Vec3 o, Vec3 d, double& enter, double& leave) const {
+    const std::array<double, 3> at = {o.x, o.y, o.z}, way = {d.x, d.y, d.z};
+    const std::array<double, 3> least = {low.x, low.y, low.z}, most = {high.x, high.y, high.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (way[k] == 0) {
+        if (at[k] < least[k] - 1e-6 || at[k] > most[k] + 1e-6) return false;
+        continue;
+      }
+      const double a = (least[k] - at[k]) / way[k], b = (most[k] - at[k]) / way[k];
+      enter = std::max(enter, std::min(a, b) - 1e-6);
+      leave = std::min(leave, std::max(a, b) + 1e-6);
+    }
+    return enter <= leave;
+  }
+
   ~Parts() {
     if (scene != nullptr) rtcReleaseScene(scene);
     if (device != nullptr) rtcReleaseDevice(device);
@@ -261,7 +276,8 @@ TetraQuadRays::TetraQuadRays(const TetraQuadField& field, int halvings, const Co
   parts_->low = low - parts_->middle;
   parts_->high = high - parts_->middle;
   // What single precision loses along the tree: a few units in the last place of the largest coordinate.
-  const double slack = 1e-6 * (1 + std::max({parts_->high.x, parts_->high.y, parts_->high.z}));
+  const double reach = 1 + std::max({parts_->high.x, parts_->high.y, parts_->high.z}), slack = 3e-6 * reach;
+  parts_->near = 8 * reach;
   std::vector<Prim> prims(crossed.size());
   std::vector<char> empty(crossed.size(), 0);
   parallel_chunks(crossed.size(), 64, context, [&](std::size_t begin, std::size_t end) {
@@ -324,22 +340,13 @@ std::optional<TetraQuadRays::Hit> TetraQuadRays::first(Vec3 origin, Vec3 directi
   const Vec3 o = (origin - parts_->origin) / parts_->step - parts_->middle;
   const double length = norm(direction);
   if (!(length > 0) || !std::isfinite(length) || !std::isfinite(o.x + o.y + o.z) || parts_->prims.empty()) return {};
-  // Along the ray, s counts steps of the grid. What lies before the box of all is cut off in double precision.
+  // Along the ray, steps of the grid are counted. From far away, what lies before the box of all is cut off here, since
+  // Embree's single precision would lose it.
   const Vec3 d = direction / length;
   const double scale = length / parts_->step;
   double enter = from * scale, leave = to * scale;
-  const std::array<double, 3> at = {o.x, o.y, o.z}, way = {d.x, d.y, d.z};
-  const std::array<double, 3> low = {parts_->low.x, parts_->low.y, parts_->low.z};
-  const std::array<double, 3> high = {parts_->high.x, parts_->high.y, parts_->high.z};
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (way[k] == 0) {
-      if (at[k] < low[k] - 1e-6 || at[k] > high[k] + 1e-6) return {};
-      continue;
-    }
-    const double a = (low[k] - at[k]) / way[k], b = (high[k] - at[k]) / way[k];
-    enter = std::max(enter, std::min(a, b) - 1e-6);
-    leave = std::min(leave, std::max(a, b) + 1e-6);
-  }
+  if (std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) > parts_->near && !parts_->clip(o, d, enter, leave))
+    return {};
   if (!(enter <= leave)) return {};
   const Vec3 start = o + enter * d;
   Query query;
