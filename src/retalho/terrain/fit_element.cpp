@@ -3,20 +3,54 @@
 namespace retalho {
 namespace {
 
+/// A weighted row of the problem: weight (row . u - value)^2.
+template <std::size_t N>
+struct WeightedRow {
+  std::array<double, N> row;
+  double value = 0, weight = 0;
+};
+
+/// The upper triangle by columns, each column as long as fills pairs of numbers, so that the loops below become vector
+/// instructions.
 template <std::size_t N>
 struct Normal {
-  std::array<double, N*(N + 1) / 2> a{};
-  std::array<double, N> b{};
+  static constexpr std::size_t kPadded = N + N % 2;
+  std::array<std::array<double, kPadded>, N> a{};
+  std::array<double, kPadded> b{};
   double c = 0;
 
-  void add(const std::array<double, N>& row, double value, double weight) {
-    std::size_t at = 0;
-    for (std::size_t j = 0; j < N; ++j) {
-      const double w = weight * row[j];
-      for (std::size_t i = 0; i <= j; ++i) a[at++] += w * row[i];
-      b[j] += w * value;
+  /// `Count` rows in one pass over the sums.
+  template <std::size_t Count>
+  [[gnu::always_inline]] inline void add(const std::array<WeightedRow<N>, Count>& rows) {
+    std::array<std::array<double, kPadded>, Count> r;
+    for (std::size_t k = 0; k < Count; ++k) {
+      r[k].back() = 0;
+      std::copy(rows[k].row.begin(), rows[k].row.end(), r[k].begin());
+      c += rows[k].weight * rows[k].value * rows[k].value;
     }
-    c += weight * value * value;
+    add_column<0, Count>(r, rows);
+    for (std::size_t i = 0; i < kPadded; ++i) {
+      double sum = 0;
+      for (std::size_t k = 0; k < Count; ++k) sum += rows[k].weight * rows[k].value * r[k][i];
+      b[i] += sum;
+    }
+  }
+
+ private:
+  template <std::size_t Column, std::size_t Count>
+  [[gnu::always_inline]] inline void add_column(const std::array<std::array<double, kPadded>, Count>& r,
+                                                const std::array<WeightedRow<N>, Count>& rows) {
+    if constexpr (Column < N) {
+      constexpr std::size_t kLength = (Column + 2) / 2 * 2;
+      std::array<double, Count> w;
+      for (std::size_t k = 0; k < Count; ++k) w[k] = rows[k].weight * r[k][Column];
+      for (std::size_t i = 0; i < kLength; ++i) {
+        double sum = a[Column][i];
+        for (std::size_t k = 0; k < Count; ++k) sum += w[k] * r[k][i];
+        a[Column][i] = sum;
+      }
+      add_column<Column + 1, Count>(r, rows);
+    }
   }
 };
 
@@ -25,7 +59,6 @@ template <class Element, std::size_t N>
 void add_fairness(const FitBasis<Element>& basis, double weight, Normal<N>& normal) {
   constexpr int kDegree = FitBasis<Element>::kDegree;
   if constexpr (kDegree >= 2) {
-    using Row = typename FitBasis<Element>::Row;
     for (std::size_t p = 0; p < FitBasis<Element>::kPieces; ++p) {
       const typename Element::Map map(basis.shape, static_cast<int>(p));
       const Barycentric dx = map(basis.macro.along_x(1)), dy = map(basis.macro.along_y());
@@ -33,19 +66,22 @@ void add_fairness(const FitBasis<Element>& basis, double weight, Normal<N>& norm
       const auto xy = FitBasis<Element>::template derivative<kDegree - 1>(basis.slope[p][0], dy);
       const auto yy = FitBasis<Element>::template derivative<kDegree - 1>(basis.slope[p][1], dy);
       const double share = weight * basis.area * piece_share(basis.shape, static_cast<int>(p));
-      const auto add = [&](const auto& net, double factor) {
-        if constexpr (kDegree == 2) {
-          normal.add(net[0], 0, factor * share);
-        } else {  // the integral of the square of a linear function: (sum of squares + square of the sum) / 12
-          Row sum;
-          for (std::size_t u = 0; u < sum.size(); ++u) sum[u] = net[0][u] + net[1][u] + net[2][u];
-          for (const Row& row : net) normal.add(row, 0, factor * share / 12);
-          normal.add(sum, 0, factor * share / 12);
-        }
-      };
-      add(xx, 1);
-      add(xy, 2);
-      add(yy, 1);
+      if constexpr (kDegree == 2) {
+        normal.template add<3>({{{xx[0], 0, share}, {xy[0], 0, 2 * share}, {yy[0], 0, share}}});
+      } else {
+        // The mean of the square of a linear function with corner values f_i: sum (f_i + sum f / 3)^2 / 12.
+        const auto add = [&](const auto& net, double factor) {
+          std::array<WeightedRow<N>, 3> rows;
+          for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t u = 0; u < N; ++u) rows[k].row[u] = net[k][u] + (net[0][u] + net[1][u] + net[2][u]) / 3;
+            rows[k].weight = factor * share / 12;
+          }
+          normal.template add<3>(rows);
+        };
+        add(xx, 1);
+        add(xy, 2);
+        add(yy, 1);
+      }
     }
   }
 }
@@ -70,20 +106,25 @@ FitElement assemble(const FitTriangle& triangle, const FitGrid& grid, const FitW
       const Barycentric u{start.r + n * along.r, start.s + n * along.s, start.t + n * along.t};
       const auto p = static_cast<std::size_t>(basis.shape.piece(u));
       const Barycentric at = maps[p](u);
-      normal.add(Basis::blend(basis.value[p], bernstein<kDegree>(at)), z,
-                 weights.cells.empty() ? 1.0 : weights.cells[cell]);
-      if (!(weights.slope > 0)) continue;
-      const std::optional<Vec2> slope = grid.slope(c, row);
-      if (!slope) continue;
+      const double weight = weights.cells.empty() ? 1.0 : weights.cells[cell];
+      const typename Basis::Row value = Basis::blend(basis.value[p], bernstein<kDegree>(at));
+      const std::optional<Vec2> slope = weights.slope > 0 ? grid.slope(c, row) : std::nullopt;
+      if (!slope) {
+        normal.template add<1>({{{value, z, weight}}});
+        continue;
+      }
       const auto lower = bernstein<kDegree - 1>(at);
-      normal.add(Basis::blend(basis.slope[p][0], lower), slope->x, weights.slope);
-      normal.add(Basis::blend(basis.slope[p][1], lower), slope->y, weights.slope);
+      normal.template add<3>({{{value, z, weight},
+                               {Basis::blend(basis.slope[p][0], lower), slope->x, weights.slope},
+                               {Basis::blend(basis.slope[p][1], lower), slope->y, weights.slope}}});
     }
   });
   if (weights.fairness > 0) add_fairness(basis, weights.fairness, normal);
   FitElement element;
-  std::copy(normal.a.begin(), normal.a.end(), element.a.begin());
-  std::copy(normal.b.begin(), normal.b.end(), element.b.begin());
+  for (std::size_t j = 0; j < Basis::kUnknowns; ++j) {
+    for (std::size_t i = 0; i <= j; ++i) element.a[packed_index(i, j)] = normal.a[j][i];
+    element.b[j] = normal.b[j];
+  }
   element.c = normal.c;
   return element;
 }

@@ -23,15 +23,18 @@ struct Trial {
   std::vector<FitElement> elements;
 };
 
+/// `limit`: a trial that is sure to cost more is given up early: part of the star, with the best data for that part
+/// alone, costs no more than all of it.
 Trial try_star(const FitState& s, std::uint32_t vertex, const std::vector<std::uint32_t>& triangles, Vec2 at,
-               bool as_is) {
+               bool as_is, double limit) {
   const bool flat = s.kind == SurfaceKind::linear;
   const std::size_t per = flat ? 1 : 3;
   Trial trial;
   trial.cost = 0;
   Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * (flat ? 1.0 : 0.0);
   a(0, 0) = 0;
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero(), u = b;
+  bool sound = false;
   for (const std::uint32_t t : triangles) {
     trial.elements.push_back(as_is ? s.elements[t] : fit_element(s.kind, s.triangle(t, vertex, at), s.grid, s.weights));
     const FitElement& e = trial.elements.back();
@@ -44,22 +47,24 @@ Trial try_star(const FitState& s, std::uint32_t vertex, const std::vector<std::u
       const std::size_t row = me * per + i;
       double right = e.b[row];
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::array<double, 3> u{rest[k].x, rest[k].y, rest[k].z};
+        const std::array<double, 3> other{rest[k].x, rest[k].y, rest[k].z};
         for (std::size_t j = 0; j < per; ++j) {
           const std::size_t column = k * per + j;
           const double entry = e.a[packed_index(std::min(row, column), std::max(row, column))];
           if (k == me)
             a(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += entry;
           else
-            right -= entry * u[j];
+            right -= entry * other[j];
         }
       }
       b(static_cast<Eigen::Index>(i)) += right;
     }
+    const Eigen::LDLT<Eigen::Matrix3d> factors(a);
+    u = factors.solve(b);
+    sound = factors.info() == Eigen::Success && u.allFinite() && factors.isPositive();
+    if (sound && trial.cost - b.dot(u) > limit) return {};
   }
-  const Eigen::LDLT<Eigen::Matrix3d> factors(a);
-  const Eigen::Vector3d u = factors.solve(b);
-  if (factors.info() != Eigen::Success || !u.allFinite() || !factors.isPositive()) return {};
+  if (!sound) return {};
   trial.cost -= b.dot(u);
   trial.data = {u(0), u(1), u(2)};
   return trial;
@@ -126,7 +131,7 @@ class Sweep {
     mesh.star(v, star);
     double area = 0;
     for (const std::uint32_t t : star.triangles) area += area_of(state_.triangle(t));
-    const Trial now = try_star(state_, v, star.triangles, mesh.at(v), true);
+    const Trial now = try_star(state_, v, star.triangles, mesh.at(v), true, INFINITY);
     double best = now.cost * (1 - 1e-6);
     if (!(best > 0)) return move;
     const double step = reach_ * std::sqrt(area / 3);
@@ -143,7 +148,7 @@ class Sweep {
       if (std::isnan(state_.height(to)) || !mesh.can_move(v, to)) continue;
       const Vec2 at{static_cast<double>(column), -static_cast<double>(row)};
       if (!sound(v, star.triangles, at)) continue;
-      Trial trial = try_star(state_, v, star.triangles, at, false);
+      Trial trial = try_star(state_, v, star.triangles, at, false, best);
       if (!(trial.cost < best)) continue;
       best = trial.cost;
       move = {true, to, trial.data, std::move(trial.elements)};

@@ -30,9 +30,21 @@ struct Expansion {
   }
 };
 
+/// Whole numbers below 2^25: cell coordinates, whose determinant is exact in double.
+bool small_whole(double v) {
+  return std::abs(v) < 0x1p25 && static_cast<double>(static_cast<int>(v)) == v;
+}
+bool small_whole(Vec2 v) {
+  return small_whole(v.x) && small_whole(v.y);
+}
+
 }  // namespace
 
 int exact_side_of(Vec2 a, Vec2 b, Vec2 c) {
+  if (small_whole(a) && small_whole(b) && small_whole(c)) {
+    const double det = cross(a - c, b - c);
+    return det > 0 ? 1 : det < 0 ? -1 : 0;
+  }
   Expansion sum;
   sum.add_product(a.x, b.y);
   sum.add_product(-a.x, c.y);
