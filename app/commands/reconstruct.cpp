@@ -10,6 +10,7 @@
 #include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/tetraquad_mesh.h"
+#include "retalho/tetraquad/document.h"
 #include "retalho/tetraquad/fit.h"
 #include "table.h"
 
@@ -43,6 +44,27 @@ void complete_normals(const Program& program, PointCloud& cloud, int neighbours,
   program.say("warning: " + warnings.back());
 }
 
+/// A document of quadrics at vertices: nothing to fit.
+void run_document(const Program& program, const Options& options, const Context& context) {
+  const TetraQuad surface = read_quadrics(options.points);
+  const TetraQuadField field(surface);
+  const TriangleMesh mesh = mesh_tetraquad(field, {.tolerance = options.tolerance}, nullptr, context);
+  const MeshTopology topology = topology_of(mesh);
+  if (std::filesystem::path(options.output).extension() == ".retalho")
+    save_model(surface, options.output, program.overwrite);
+  else
+    write_mesh(mesh, options.output, program.overwrite);
+  const nlohmann::ordered_json json = {{"vertices", surface.mesh.lattice.size()},
+                                       {"tetrahedra", surface.mesh.tets.size()},
+                                       {"coefficients", 10 * surface.mesh.lattice.size()},
+                                       {"components", topology.components},
+                                       {"open_edges", topology.open_edges},
+                                       {"triangles", mesh.triangles.size()}};
+  if (program.json) return program.print(json);
+  program.say(
+      fmt::format("{}: {} tetrahedra, {} triangles", options.output, surface.mesh.tets.size(), mesh.triangles.size()));
+}
+
 void run(const Program& program, const Options& options) {
   const std::size_t split = choose("--split", options.split, kSplits);
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
@@ -51,6 +73,7 @@ void run(const Program& program, const Options& options) {
   if (!options.tetrahedra.empty())
     check_output(program, options.tetrahedra, {".vtk"}, {options.points, options.output});
   const Context context = program.context();
+  if (std::filesystem::path(options.points).extension() == ".json") return run_document(program, options, context);
   PointCloud cloud = load_points(program, options.points, {}, context);
   const Stopwatch watch;
   std::vector<std::string> warnings;
@@ -129,7 +152,10 @@ void add_reconstruct(CLI::App& root, Program& program) {
                                   "retalho reconstruct scan.xyz --resolution 48 -o surface.glb --tolerance 0.01\n"
                                   "retalho reconstruct scan.ply --max-error 0.05 -o surface.ply\n"
                                   "retalho reconstruct noisy.ply --smoothness 10 -o surface.obj --json");
-  command->add_option("POINTS", options->points, "Points with normals: .ply, .xyz, .csv")->required()->type_name("");
+  command
+      ->add_option("POINTS", options->points, "Points with normals: .ply, .xyz, .csv; or quadrics at vertices: .json")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", options->output, "The model (.retalho), or triangles: .ply, .obj, .stl, .glb")
       ->required()
       ->type_name("FILE");
