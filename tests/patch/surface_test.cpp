@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "patch/comparison.h"
 #include "patch/support.h"
 #include "patch/surfaces.h"
 #include "retalho/core/error.h"
@@ -19,34 +20,6 @@ double largest_error(const Surface& truth, const PatchSurface& surface, int poin
     const Vec2 uv = random_parameters(random);
     worst = std::max(worst, norm(surface.point(uv) - truth(uv).point));
   }
-  return worst;
-}
-
-double largest_gap(const Patch& patch, const PatchSurface& surface) {
-  double worst = 0;
-  for (int side = 0; side < 3; ++side)
-    for (int k = 0; k <= 1000; ++k)
-      worst = std::max(worst, norm(surface.point(side_parameters(side, k / 1000.0)) -
-                                   patch.sides[static_cast<std::size_t>(side)].point(k / 1000.0)));
-  return worst;
-}
-
-/// The largest difference of one-sided gradients over all inner edges, at a few places of each.
-double largest_jump(const Patch& patch, const PatchSurface& surface) {
-  double worst = 0;
-  const double e = 1e-13;  // far enough to be in the other triangle, near enough for the limit
-  for (const auto& t : patch.domain.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec2 a = patch.domain.parameters[t[k]], b = patch.domain.parameters[t[(k + 1) % 3]],
-                 c = patch.domain.parameters[t[(k + 2) % 3]];
-      for (const double s : {0.2, 0.5, 0.7}) {
-        const Vec2 m = a + s * (b - a), in = (c - m) / norm(c - m);
-        const Vec2 p = m + e * in, q = m - e * in;
-        if (q.x < 0 || q.y < 0 || q.x + q.y > 1) continue;
-        const SurfaceJet x = surface.jet(p), y = surface.jet(q);
-        worst = std::max({worst, norm(x.du - y.du), norm(x.dv - y.dv)});
-      }
-    }
   return worst;
 }
 
@@ -73,7 +46,7 @@ TEST(Smooth, MeetsItsNodesAndSidesExactly) {
   for (const bool regular : {true, false}) {
     const Patch patch = natural_patch(sine, regular ? regular_domain(64) : irregular_domain(64, 5), Recovery::smooth);
     const PatchSurface surface(patch);
-    EXPECT_LE(largest_gap(patch, surface), 1e-14 * control_size(patch.positions)) << regular;
+    EXPECT_LE(side_gap(patch, surface), 1e-14 * control_size(patch.positions)) << regular;
     for (std::size_t i = 0; i < patch.positions.size(); ++i)
       EXPECT_LE(norm(surface.point(patch.domain.parameters[i]) - patch.positions[i]), 2e-14);
   }
@@ -82,7 +55,7 @@ TEST(Smooth, MeetsItsNodesAndSidesExactly) {
 TEST(Smooth, IsC1AcrossEdges) {
   for (const bool regular : {true, false}) {
     const Patch patch = natural_patch(octant, regular ? regular_domain(32) : irregular_domain(32, 5), Recovery::smooth);
-    EXPECT_LE(largest_jump(patch, PatchSurface(patch)), 1e-11) << regular;
+    EXPECT_LE(gradient_jump(patch, PatchSurface(patch)), 1e-11) << regular;
   }
 }
 
@@ -153,8 +126,8 @@ TEST(Spr, IsContinuousAndThirdOrderButNotC1) {
   const PatchSurface c(coarse), f(fine);
   EXPECT_LE(largest_error(octant, f), 4e-5);
   EXPECT_GE(std::log2(largest_error(octant, c) / largest_error(octant, f)), 2.5);
-  EXPECT_GT(largest_jump(fine, f), 1e-4);
-  EXPECT_GT(largest_gap(fine, f), 1e-7);
+  EXPECT_GT(gradient_jump(fine, f), 1e-4);
+  EXPECT_GT(side_gap(fine, f), 1e-7);
   // Patches are disjoint, and there is one for about seven triangles.
   const double smooth_error = norm(f.shading_normal({0.31, 0.33}) - normalized(octant({0.31, 0.33}).point));
   EXPECT_LE(smooth_error, 5e-3);
@@ -174,7 +147,7 @@ TEST(Recoveries, WorkOnTheSmallestMeshes) {
         EXPECT_LE(norm(jet.point), 5);
       }
       if (recovery == Recovery::smooth) {
-        EXPECT_LE(largest_gap(patch, surface), 2e-14);
+        EXPECT_LE(side_gap(patch, surface), 2e-14);
       }
     }
 }

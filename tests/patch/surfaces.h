@@ -34,6 +34,44 @@ inline SurfaceJet monkey(Vec2 p) {
   return {{u, v, u * u * u - 3 * u * v * v}, {1, 0, 3 * u * u - 3 * v * v}, {0, 1, -6 * u * v}};
 }
 
+/// A rational cubic triangle with fixed control points and weights, by its homogeneous polynomials.
+inline SurfaceJet rational(Vec2 p) {
+  static const auto net = [] {
+    struct Point {
+      Vec3 b;
+      double w = 1;
+    };
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal(0, 0.15);
+    std::uniform_real_distribution<double> unit(-0.7, 0.7);
+    std::array<std::array<Point, 4>, 4> out{};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; i + j < 4; ++j) {
+        const double x = normal(random), y = normal(random), z = normal(random);
+        out[i][j] = {{static_cast<double>(i) / 3 + x, static_cast<double>(j) / 3 + y, z}, std::exp(unit(random))};
+      }
+    return out;
+  }();
+  constexpr std::array<double, 4> factorial = {1, 1, 2, 6};
+  const double w = 1 - p.x - p.y;
+  const auto power = [](double x, std::size_t n) { return n == 0 ? 1.0 : std::pow(x, static_cast<double>(n)); };
+  const auto slope = [&](double x, std::size_t n) { return n == 0 ? 0.0 : static_cast<double>(n) * power(x, n - 1); };
+  Vec3 sum, su, sv;
+  double all = 0, au = 0, av = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; i + j < 4; ++j) {
+      const std::size_t k = 3 - i - j;
+      const double c = 6 / (factorial[i] * factorial[j] * factorial[k]) * net[i][j].w;
+      const double a = power(p.x, i), b = power(p.y, j), d = power(w, k), slope_w = slope(w, k);
+      const double f = c * a * b * d, fu = c * (slope(p.x, i) * b * d - a * b * slope_w),
+                   fv = c * (a * slope(p.y, j) * d - a * b * slope_w);
+      sum = sum + f * net[i][j].b, su = su + fu * net[i][j].b, sv = sv + fv * net[i][j].b;
+      all += f, au += fu, av += fv;
+    }
+  const Vec3 x = sum / all;
+  return {x, (su - au * x) / all, (sv - av * x) / all};
+}
+
 /// A side of a surface: its second derivative along s by central differences of the exact first one.
 inline PatchSides sides_of(const Surface& surface) {
   PatchSides sides;
