@@ -1,31 +1,74 @@
-// retalho patch: three boundary curves to a triangular parametric surface.
+// retalho patch: three boundary curves, or a mesh, to a triangular parametric surface.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/patch_mesh.h"
 #include "retalho/patch/document.h"
-#include "retalho/patch/patch.h"
+#include "retalho/patch/joins.h"
+#include "retalho/patch/parameterize.h"
+#include "retalho/patch/report.h"
+#include "retalho/render/patch_picture.h"
 #include "table.h"
 
 namespace retalho::app {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
+const std::vector<std::string> kStyles = {"shaded", "lines", "isophotes", "zebra", "gaussian", "mean"};
+
 struct Options {
-  std::string input, recovery = "smooth", layout = "delaunay", samples = "parameter";
-  std::vector<std::string> outputs;
+  std::string input, recovery = "smooth", layout = "delaunay", samples = "parameter", weights = "mean-value",
+                     style = "lines", size = "800x600";
+  std::vector<std::string> outputs, at;
   std::vector<std::size_t> divisions;
-  double snap = 0;
+  std::vector<std::uint32_t> corners;
+  std::size_t refine = 1;
+  double snap = 0, from = 30, elevation = 30;
 };
 
-std::vector<Patch> make_patches(const Options& options, const Context& context) {
+bool ends_with(const std::string& path, const char* ending) {
+  std::string end = std::filesystem::path(path).extension().string();
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end == ending;
+}
+
+std::vector<Patch> from_mesh(const Program& program, const Options& options, Recovery recovery,
+                             const Context& context) {
+  const TriangleMesh mesh = read_mesh(options.input);
+  ParameterizeOptions made;
+  made.weights = static_cast<Weights>(choose("--parameters", options.weights, {"shape-preserving", "mean-value"}));
+  if (!options.corners.empty()) {
+    if (options.corners.size() != 3) throw UsageError("--corners: expected three vertex numbers", {}, "--corners");
+    made.corners = {options.corners[0], options.corners[1], options.corners[2]};
+  }
+  try {
+    Parameterization result = parameterize(mesh.positions, mesh.triangles, made, context);
+    program.say(fmt::format("corners U, V, W at vertices {}, {}, {}{}", result.domain.sides[0][0],
+                            result.domain.sides[1][0], result.domain.sides[2][0],
+                            options.corners.empty() ? " (the sharpest turns; --corners chooses others)" : ""));
+    if (result.split_edges > 0)
+      program.say(fmt::format("{} edges between two nodes of one side were split", result.split_edges));
+    std::vector<Patch> patches;
+    patches.push_back(patch_of(std::move(result), recovery));
+    return patches;
+  } catch (const BadInput& error) {
+    throw BadInput(fmt::format("{}: {}", options.input, error.what()), options.input, error.where());
+  }
+}
+
+std::vector<Patch> make_patches(const Program& program, const Options& options, const Context& context) {
   const auto placement = static_cast<SidePlacement>(choose("--samples", options.samples, {"parameter", "arc-length"}));
   PatchOptions made;
   made.recovery = static_cast<Recovery>(choose("--recovery", options.recovery, {"barycentric", "spr", "smooth"}));
   made.layout = static_cast<DomainLayout>(choose("--layout", options.layout, {"delaunay", "midpoint"}));
+  if (ends_with(options.input, ".ply") || ends_with(options.input, ".obj"))
+    return from_mesh(program, options, made.recovery, context);
   if (!options.divisions.empty() && options.divisions.size() != 1 && options.divisions.size() != 3)
     throw UsageError("--divisions: expected one number, or three with commas", {}, "--divisions");
   const PatchOptions defaults = made;
@@ -46,70 +89,171 @@ std::vector<Patch> make_patches(const Options& options, const Context& context) 
   return patches;
 }
 
-void run(const Program& program, const Options& options) {
-  for (const std::string& out : options.outputs)
-    check_output(program, out, {".ply", ".obj", ".stl", ".glb"}, {options.input});
-  const Context context = program.context();
-  const Stopwatch clock;
-  const std::vector<Patch> patches = make_patches(options, context);
-  std::size_t nodes = 0, triangles = 0, folds = 0;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    nodes += patches[i].positions.size();
-    triangles += patches[i].domain.triangles.size();
-    const FoldReport report = find_folds(patches[i]);
-    folds += report.folds;
-    if (report.folds > 0)
-      program.say(fmt::format(
-          "patch {} folds over in {} places, worst at u = {:.4g}, v = {:.4g}, point ({:.6g}, {:.6g}, {:.6g}): other "
-          "parameters of the sides (--samples arc-length), or two patches, may help",
-          i, report.folds, report.parameters.x, report.parameters.y, report.point.x, report.point.y, report.point.z));
+Json point_json(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+Json joins_json(const std::vector<PatchJoin>& joins) {
+  Json list = Json::array();
+  for (const PatchJoin& join : joins)
+    list.push_back({{"patches", {join.first, join.second}},
+                    {"sides", {join.first_side + 1, join.second_side + 1}},
+                    {"watertight", join.watertight},
+                    {"gap", join.gap},
+                    {"angle", join.degrees},
+                    {"at", join.at},
+                    {"point", point_json(join.point)},
+                    {"kind", join.g1 ? "G1" : "G0"}});
+  return list;
+}
+
+Json values_json(const Options& options, const PatchSurface& surface) {
+  Json list = Json::array();
+  for (const std::string& text : options.at) {
+    const Vec2 uv = parse_point("--at", text);
+    const PatchJet jet = surface.full_jet(uv);
+    const PatchCurvature curvature = surface.curvature(uv);
+    list.push_back({{"u", uv.x},
+                    {"v", uv.y},
+                    {"point", point_json(jet.point)},
+                    {"du", point_json(jet.du)},
+                    {"dv", point_json(jet.dv)},
+                    {"duu", point_json(jet.duu)},
+                    {"duv", point_json(jet.duv)},
+                    {"dvv", point_json(jet.dvv)},
+                    {"normal", point_json(jet.normal)},
+                    {"gaussian", curvature.gaussian},
+                    {"mean", curvature.mean},
+                    {"inside", jet.inside}});
   }
-  const TriangleMesh mesh = mesh_patches(patches);
-  const MeshCheck check = check_mesh(mesh);
+  return list;
+}
+
+void write_outputs(const Program& program, const Options& options, const std::vector<Patch>& patches,
+                   const std::vector<PatchSurface>& surfaces, const Context& context) {
+  std::vector<Patch> fine;
+  PatchPictureOptions picture;
+  picture.style = static_cast<PatchStyle>(choose("--style", options.style, kStyles));
+  std::tie(picture.width, picture.height) = parse_size("--size", options.size);
+  picture.from = options.from;
+  picture.elevation = options.elevation;
   for (const std::string& out : options.outputs) {
     context.check();
-    write_mesh(mesh, out, program.overwrite);
+    if (ends_with(out, ".png")) {
+      write_png(draw_patches(patches, surfaces, picture, context), out, program.overwrite);
+    } else {
+      if (fine.empty())
+        for (std::size_t i = 0; i < patches.size(); ++i)
+          fine.push_back(refine(patches[i], surfaces[i], options.refine));
+      write_mesh(mesh_patches(fine), out, program.overwrite);
+    }
     program.detail(fmt::format("wrote '{}'", out));
   }
-  const nlohmann::ordered_json json = {{"patches", patches.size()},
-                                       {"nodes", nodes},
-                                       {"triangles", triangles},
-                                       {"folds", folds},
-                                       {"boundary_edges", check.open_edges},
-                                       {"seconds", clock.seconds()}};
+}
+
+void run(const Program& program, const Options& options) {
+  for (const std::string& out : options.outputs)
+    check_output(program, out, {".ply", ".obj", ".stl", ".glb", ".png"}, {options.input});
+  if (options.refine < 1 || options.refine > 1000) throw UsageError("--refine: 1 to 1000", {}, "--refine");
+  choose("--style", options.style, kStyles);
+  parse_size("--size", options.size);
+  if (!(std::abs(options.elevation) <= 90) || !std::isfinite(options.from))
+    throw UsageError("--elevation: -90 to 90 degrees; --from: a number of degrees", {}, "--elevation");
+  const Context context = program.context();
+  const Stopwatch clock;
+  const std::vector<Patch> patches = make_patches(program, options, context);
+  std::vector<PatchSurface> surfaces;
+  std::size_t nodes = 0, triangles = 0, folds = 0;
+  double gap = 0, jump = 0;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    surfaces.emplace_back(patches[i], context);
+    nodes += patches[i].positions.size();
+    triangles += patches[i].domain.triangles.size();
+    const PatchReport report = assess(patches[i], surfaces[i]);
+    folds += report.folds.folds;
+    gap = std::max(gap, report.boundary_gap);
+    jump = std::max(jump, report.gradient_jump);
+    const Vec3 p = report.folds.point;
+    if (report.folds.folds > 0)
+      program.say(
+          fmt::format("patch {} folds over in {} places, worst at u = {:.4g}, v = {:.4g}, point ({:.6g}, {:.6g}, "
+                      "{:.6g}): other parameters of the sides (--samples arc-length), or two patches, may help",
+                      i, report.folds.folds, report.folds.parameters.x, report.folds.parameters.y, p.x, p.y, p.z));
+    else if (report.turned > 0)
+      program.say(
+          fmt::format("patch {}: in {} triangles the surface's normal turns away from the triangle: more "
+                      "--divisions may help",
+                      i, report.turned));
+  }
+  const std::vector<PatchJoin> joins = find_joins(patches, surfaces);
+  for (const PatchJoin& join : joins)
+    if (!join.watertight)
+      program.say(
+          fmt::format("patches {} and {} share a side, but not its nodes: give both the same divisions there, or "
+                      "name one curve in both",
+                      join.first, join.second));
+  write_outputs(program, options, patches, surfaces, context);
+  Json json = {{"patches", patches.size()}, {"nodes", nodes}, {"triangles", triangles},    {"boundary_gap", gap},
+               {"gradient_jump", jump},     {"folds", folds}, {"joins", joins_json(joins)}};
+  if (!options.at.empty()) json["points"] = values_json(options, surfaces[0]);
+  json["seconds"] = clock.seconds();
   if (program.json) return program.print(json);
-  program.print(list_text({{"patches", json["patches"].dump()},
-                           {"nodes", json["nodes"].dump()},
-                           {"triangles", json["triangles"].dump()},
-                           {"folds", json["folds"].dump()}}));
+  std::vector<std::pair<std::string, std::string>> list = {
+      {"patches", json["patches"].dump()},     {"nodes", json["nodes"].dump()},
+      {"triangles", json["triangles"].dump()}, {"boundary gap", number_text(gap)},
+      {"gradient jump", number_text(jump)},    {"folds", json["folds"].dump()}};
+  for (const PatchJoin& join : joins)
+    list.emplace_back(
+        fmt::format("join {}.{} - {}.{}", join.first, join.first_side + 1, join.second, join.second_side + 1),
+        fmt::format("{}, {}, largest angle {:.4g} degrees at s = {:.3g}", join.watertight ? "watertight" : "cracked",
+                    join.g1 ? "G1" : "G0", join.degrees, join.at));
+  if (!options.at.empty())
+    for (const Json& at : json["points"])
+      list.emplace_back(fmt::format("u {} v {}", at["u"].dump(), at["v"].dump()),
+                        fmt::format("point {} normal {}", at["point"].dump(), at["normal"].dump()));
+  program.print(list_text(list));
 }
 
 }  // namespace
 
 void add_patch(CLI::App& root, Program& program) {
-  auto options = std::make_shared<Options>();
+  auto o = std::make_shared<Options>();
   CLI::App* command = add_command(root, program, "patch", "Three boundary curves to a triangular parametric surface",
-                                  "retalho patch examples/patches/octant.json -o octant.glb\n"
-                                  "retalho patch sides.json -o mesh.ply --divisions 20,30,25 --snap 0.01");
-  command->add_option("FILE", options->input, "Patches (.json, docs/triangular-patches.md)")->required()->type_name("");
-  command->add_option("-o,--output", options->outputs, "Triangles (.ply .obj .stl .glb); may be repeated")
+                                  "retalho patch examples/patches/octant.json -o octant.glb --refine 4\n"
+                                  "retalho patch examples/patches/hull.json -o hull.png --style zebra\n"
+                                  "retalho patch sides.json -o mesh.ply --divisions 20,30,25 --snap 0.01\n"
+                                  "retalho patch scan.ply -o smooth.glb --corners 0,17,230 --refine 4");
+  command->add_option("FILE", o->input, "Patches (.json, docs/triangular-patches.md), or a mesh of a disk (.ply .obj)")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", o->outputs, "Triangles (.ply .obj .stl .glb) or a picture (.png); may be repeated")
       ->type_name("FILE")
       ->take_all()
       ->expected(1);
-  command->add_option("--divisions", options->divisions, "Edges a side: N, or N1,N2,N3 (default: the file's, or 32)")
+  command->add_option("--divisions", o->divisions, "Edges a side: N, or N1,N2,N3 (default: the file's, or 32)")
       ->type_name("N")
       ->delimiter(',');
-  command->add_option("--layout", options->layout, "Different divisions a side: delaunay (any), midpoint (three grids)")
-      ->type_name("KIND")
-      ->capture_default_str();
-  command->add_option("--samples", options->samples, "How sides are divided: by parameter, by arc-length")
-      ->type_name("KIND")
-      ->capture_default_str();
-  command->add_option("--recovery", options->recovery, "Between the nodes: barycentric, spr, smooth")
-      ->type_name("KIND")
-      ->capture_default_str();
-  command->add_option("--snap", options->snap, "Join ends of sides that are at most T apart")->type_name("T");
-  command->callback([options, &program] { run(program, *options); });
+  const auto kind = [&](const char* name, std::string& value, const char* words) {
+    command->add_option(name, value, words)->type_name("KIND")->capture_default_str();
+  };
+  kind("--layout", o->layout, "Different divisions a side: delaunay (any), midpoint (three grids)");
+  kind("--samples", o->samples, "How sides are divided: by parameter, by arc-length");
+  kind("--recovery", o->recovery, "Between the nodes: barycentric, spr, smooth");
+  kind("--parameters", o->weights, "A mesh's parameters: shape-preserving, mean-value");
+  kind("--style", o->style, "Pictures: shaded, lines, isophotes, zebra, gaussian, mean");
+  command->add_option("--corners", o->corners, "A mesh's corners: three vertices of its border (default: found)")
+      ->type_name("A,B,C")
+      ->delimiter(',');
+  command->add_option("--snap", o->snap, "Join ends of sides that are at most T apart")->type_name("T");
+  command->add_option("--refine", o->refine, "Written triangles: each edge cut into N, on the surface")->type_name("N");
+  command->add_option("--at", o->at, "Report value, derivatives and curvature of the first patch there")
+      ->type_name("U,V")
+      ->take_all()
+      ->expected(1);
+  command->add_option("--size", o->size, "Pixels of a picture")->type_name("WxH")->capture_default_str();
+  command->add_option("--from", o->from, "Where the eye stands: degrees from the x axis")->type_name("DEG");
+  command->add_option("--elevation", o->elevation, "... and above the horizon")->type_name("DEG");
+  command->callback([o, &program] { run(program, *o); });
 }
 
 }  // namespace retalho::app

@@ -24,7 +24,7 @@ TEST(PatchCommand, WritesTrianglesInEveryFormat) {
   EXPECT_EQ(run(folder, "patch p.json -o a.ply").code, 5);
   const Outcome counts = run(folder, "patch p.json --divisions 7,12,20 --json");
   ASSERT_EQ(counts.code, 0) << counts.err;
-  EXPECT_EQ(counts.json().at("boundary_edges"), 39);
+  EXPECT_EQ(counts.json().at("triangles"), 2 * counts.json().at("nodes").get<int>() - 2 - 39);
 }
 
 TEST(PatchCommand, ErrorsNameThePlace) {
@@ -45,6 +45,46 @@ TEST(PatchCommand, ErrorsNameThePlace) {
   EXPECT_EQ(run(folder, "patch two.json").code, 3);
   EXPECT_EQ(run(folder, "patch gap.json --recovery exact").code, 2);
   EXPECT_EQ(run(folder, "patch missing.json").code, 4);
+}
+
+TEST(PatchCommand, SeveralPatchesArePicturedAndTheirJoinsTold) {
+  const ScratchFolder folder;
+  const std::string hull = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/hull.json";
+  const Outcome outcome =
+      run(folder, "patch " + hull + " -o a.png -o a.ply --refine 2 --style zebra --size 200x150 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_EQ(json.at("patches"), 4);
+  EXPECT_LE(json.at("boundary_gap").get<double>(), 1e-13);
+  EXPECT_LE(json.at("gradient_jump").get<double>(), 1e-11);
+  ASSERT_EQ(json.at("joins").size(), 4U);
+  for (const auto& join : json.at("joins")) {
+    EXPECT_EQ(join.at("watertight"), true);
+    EXPECT_EQ(join.at("kind"), "G0");
+    EXPECT_GT(join.at("angle").get<double>(), 1);
+  }
+  EXPECT_EQ(slurp(folder / "a.png").substr(1, 3), "PNG");
+  EXPECT_EQ(run(folder, "patch " + hull + " -o b.png --style stripes").code, 2);
+}
+
+TEST(PatchCommand, AMeshGetsParametersAndASurface) {
+  const ScratchFolder folder;
+  const std::string octant = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/octant.json";
+  ASSERT_EQ(run(folder, "patch " + octant + " -o m.ply -o m.obj --divisions 20").code, 0);
+  for (const char* kind : {"shape-preserving", "mean-value"}) {
+    const Outcome outcome = run(folder, std::string("patch m.ply --json --at 0.3,0.3 --parameters ") + kind);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.json().at("triangles"), 400);
+    EXPECT_NE(outcome.err.find("corners U, V, W"), std::string::npos);
+    EXPECT_EQ(outcome.json().at("points").at(0).at("inside"), true);
+  }
+  EXPECT_EQ(run(folder, "patch m.obj -o fine.glb --refine 3").code, 0);
+  const Outcome corner = run(folder, "patch m.ply --corners 0,1,30 --json");
+  EXPECT_EQ(corner.code, 3);
+  folder.put("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\nf 4 5 6\n");
+  const Outcome parts = run(folder, "patch two.obj --json");
+  EXPECT_EQ(parts.code, 3);
+  EXPECT_NE(parts.err.find("2 separate parts"), std::string::npos) << parts.err;
 }
 
 }  // namespace

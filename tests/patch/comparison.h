@@ -67,9 +67,12 @@ inline Measured measure(const Surface& truth, Domain domain, Recovery recovery) 
   std::vector<Vec2> places;
   for (int k = 0; k < 6000; ++k) places.push_back(random_place(random));
   std::vector<SurfaceJet> jets(places.size());
-  const auto asked = now();
-  for (std::size_t k = 0; k < places.size(); ++k) jets[k] = surface.jet(places[k]);
-  m.asking = 1e9 * seconds(asked, now()) / static_cast<double>(places.size());
+  m.asking = 1e300;
+  for (int run = 0; run < 9; ++run) {
+    const auto asked = now();
+    for (std::size_t k = 0; k < places.size(); ++k) jets[k] = surface.jet(places[k]);
+    m.asking = std::min(m.asking, 1e9 * seconds(asked, now()) / static_cast<double>(places.size()));
+  }
   for (std::size_t k = 0; k < places.size(); ++k) {
     const SurfaceJet x = truth(places[k]);
     m.error = std::max(m.error, norm(jets[k].point - x.point));

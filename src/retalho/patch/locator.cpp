@@ -80,12 +80,14 @@ DomainPlace DomainLocator::locate(Vec2 p) const {
     const Frame& f = frames_[t];
     const Vec2 d = p - f.a;
     const double l2 = dot(f.g2, d), l3 = dot(f.g3, d), l1 = 1 - l2 - l3;
-    const double least = std::min({l1, l2, l3});
-    if (least <= best) continue;
-    best = least;
-    place.triangle = t;
-    place.l1 = l1, place.l2 = l2, place.l3 = l3;
-    if (least >= 0) break;
+    // Selected, not branched on: which candidate it is cannot be predicted, and the next point need not wait for it.
+    const double least = std::min(l1, std::min(l2, l3));
+    const bool better = least > best;
+    best = better ? least : best;
+    place.triangle = better ? t : place.triangle;
+    place.l1 = better ? l1 : place.l1;
+    place.l2 = better ? l2 : place.l2;
+    place.l3 = better ? l3 : place.l3;
   }
   return place;
 }
