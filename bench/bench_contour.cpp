@@ -29,7 +29,7 @@ using namespace retalho;
 namespace {
 
 constexpr int kSide = 4096;
-constexpr double kStep = 20;
+constexpr double kStep = 5.5;
 
 double cpu() {
   rusage u{};
@@ -66,7 +66,7 @@ const Raster& fractal() {
       return static_cast<float>(size * (2 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1));
     };
     double size = 600;
-    for (int step = kSide; step > 1; step /= 2, size *= 0.55) {
+    for (int step = kSide; step > 1; step /= 2, size *= 0.5) {
       const int half = step / 2;
       for (int y = half; y < n; y += step)
         for (int x = half; x < n; x += step)
@@ -116,8 +116,9 @@ Run contour(const Raster& raster, double step, bool simplify, int threads, doubl
   const double c = cpu(), w = wall();
   ContourExtras extras;
   const Context context{.threads = threads};
-  const BicubicGrid grid = make_bicubic(raster, {}, context);
-  Run run{0, 0, trace_contours(grid, levels_of(raster, step), {tolerance, simplify}, context, &extras), extras.stats};
+  BicubicGrid grid = make_bicubic(raster, {}, context);
+  Run run{0, 0, trace_contours(std::move(grid), levels_of(raster, step), {tolerance, simplify}, context, &extras),
+          extras.stats};
   run.cpu_seconds = cpu() - c;
   run.wall_seconds = wall() - w;
   return run;

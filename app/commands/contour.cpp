@@ -146,7 +146,7 @@ void run(const Program& program, const Options& options) {
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
   check_output(program, options.output, kEndings, {options.input});
   const Context context = program.context();
-  const Surface surface = load_surface(program, options, context);
+  Surface surface = load_surface(program, options, context);
   ContourOptions contour;
   contour.simplify = !options.raw;
   contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
@@ -156,14 +156,16 @@ void run(const Program& program, const Options& options) {
   ContourExtras extras;
   extras.want_bands = options.bands;
   const std::vector<double> levels = levels_of(options, surface);
-  const ContourSet set = surface.bicubic ? trace_contours(*surface.bicubic, levels, contour, context, &extras)
-                                         : trace_contours(*surface.terrain, levels, contour, context, &extras);
+  const Georef georef = surface.georef();
+  const ContourSet set = surface.bicubic
+                             ? trace_contours(std::move(*surface.bicubic), levels, contour, context, &extras)
+                             : trace_contours(*surface.terrain, levels, contour, context, &extras);
   context.check();
   const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
   if (options.bands)
-    write_bands(extras.bands, surface.georef(), options.output, file, context);
+    write_bands(extras.bands, georef, options.output, file, context);
   else
-    write_contours(set, surface.georef(), options.output, file, context);
+    write_contours(set, georef, options.output, file, context);
 
   std::size_t closed = 0;
   for (const ContourLine& line : set.lines) closed += line.closed ? 1 : 0;
@@ -179,7 +181,7 @@ void run(const Program& program, const Options& options) {
                                  {"closed_lines", closed},      {"vertices", set.points.size()},
                                  {"tolerance", set.tolerance},  {"height_quantum", set.height_quantum}};
   if (options.bands) json["polygons"] = extras.bands.polygons.size();
-  json["singular"] = singular_json(set, surface.georef());
+  json["singular"] = singular_json(set, georef);
   json["seconds"] = watch.seconds();
   if (program.json) return program.print(json);
   std::vector<std::pair<std::string, std::string>> lines{

@@ -271,7 +271,7 @@ class BoxTracer {
       if (!(next >= low && next <= high)) next = 0.5 * (low + high);
       const double moved = std::abs(next - s);
       s = next;
-      if (moved <= 1e-9 * reach) break;
+      if (moved <= 1e-5 * reach) break;  // what is left is about its square
       Patch::evaluate(net_, start + s * d, f, derivatives);
       f -= work.threshold;
       slope = dot(derivatives, d);

@@ -74,6 +74,22 @@ RawLines raw_lines(const Trace& trace, std::vector<double> levels, const Contour
   return lines;
 }
 
+ContourSet trace_fixed(const FixedGrid& fixed, std::vector<double> levels, const ContourOptions& options,
+                       const Context& context, ContourExtras* extras) {
+  const FixedLevels fixed_levels(levels, fixed.per_unit);
+  context.report("contour", 0);
+  const bool want_bands = extras != nullptr && extras->want_bands;
+  std::vector<BorderEdge> border;
+  Trace trace = trace_grid(fixed, fixed_levels, raw_tolerance(options), want_bands ? &border : nullptr, context);
+  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / fixed.per_unit, extras);
+  if (!want_bands) trace = {};
+  if (options.simplify) simplify_lines(lines, fixed, fixed_levels, context);
+  if (want_bands)
+    extras->bands = build_bands(lines.set, lines.ends, grid_border(fixed, fixed_levels, std::move(border), trace));
+  context.report("contour", 1);
+  return std::move(lines.set);
+}
+
 }  // namespace
 
 std::vector<double> contour_levels(double low, double high, double interval, double base) {
@@ -91,19 +107,15 @@ std::vector<double> contour_levels(double low, double high, double interval, dou
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context, ContourExtras* extras) {
   check(levels, options);
+  return trace_fixed(fix_grid(grid, context), std::move(levels), options, context, extras);
+}
+
+ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
+                          const Context& context, ContourExtras* extras) {
+  check(levels, options);
   const FixedGrid fixed = fix_grid(grid, context);
-  const FixedLevels fixed_levels(levels, fixed.per_unit);
-  context.report("contour", 0);
-  const bool want_bands = extras != nullptr && extras->want_bands;
-  std::vector<BorderEdge> border;
-  Trace trace = trace_grid(fixed, fixed_levels, raw_tolerance(options), want_bands ? &border : nullptr, context);
-  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / fixed.per_unit, extras);
-  if (!want_bands) trace = {};
-  if (options.simplify) simplify_lines(lines, fixed, fixed_levels, context);
-  if (want_bands)
-    extras->bands = build_bands(lines.set, lines.ends, grid_border(fixed, fixed_levels, std::move(border), trace));
-  context.report("contour", 1);
-  return std::move(lines.set);
+  grid = {};
+  return trace_fixed(fixed, std::move(levels), options, context, extras);
 }
 
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,

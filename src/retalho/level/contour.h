@@ -44,6 +44,9 @@ std::vector<double> contour_levels(double low, double high, double interval, dou
 /// vertex. The same bytes from any number of threads.
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context = {}, ContourExtras* extras = nullptr);
+/// The same for a grid that is not needed afterwards: its memory is given back as soon as may be.
+ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
+                          const Context& context = {}, ContourExtras* extras = nullptr);
 
 /// The same on the surface of a terrain model, linear, Powell-Sabin or Clough-Tocher. Where the model's grid has cells
 /// without data the lines end on the border of those cells; bands of such a model are refused (BadInput).

@@ -65,7 +65,7 @@ double polish_root(const std::array<double, static_cast<std::size_t>(N + 1)>& e)
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
     const double moved = std::abs(next - t);
     t = next;
-    if (moved < 1e-13 || f == 0) break;
+    if (moved < 1e-9 || f == 0) break;  // what is left is about its square
   }
   return t;
 }

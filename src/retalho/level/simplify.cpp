@@ -11,13 +11,13 @@
 namespace retalho {
 namespace {
 
-constexpr int kHalvings = 2;
+constexpr int kHalvings = 4;
 
 class GridSurface {
  public:
   explicit GridSurface(const FixedGrid& grid) : grid_(grid) {}
 
-  bool across(const Strip& strip, std::uint32_t, double& steepest) const {
+  bool across(const Strip& strip, std::uint32_t, double& steepest) {
     // In cells, y to the south.
     const double w = grid_.cell_width, h = grid_.cell_height;
     const Vec2 end = strip.start + strip.length * strip.along;
@@ -44,14 +44,27 @@ class GridSurface {
         const Frame frame = grid_.frame(column, row);
         if (!strip.touches(frame_corners<RectanglePatch>(frame))) continue;
         if (!grid_.has_patch(column, row)) return false;
-        if (!grows_across<RectanglePatch>(grid_.net(column, row), frame, strip, kHalvings, 1, steepest)) return false;
+        if (!grows_across(slopes(column, row), frame, strip, kHalvings, 1, steepest)) return false;
       }
     }
     return true;
   }
 
  private:
+  /// Of the patches seen last, by a few bits of their place: a line's chords ask for the same ones again and again.
+  const PatchSlopes<RectanglePatch>& slopes(int column, int row) {
+    const std::size_t node = grid_.node(column, row);
+    Seen& seen = seen_[(static_cast<std::size_t>(row) % 16) * 16 + static_cast<std::size_t>(column) % 16];
+    if (seen.node != node) seen = {node, PatchSlopes<RectanglePatch>(grid_.net(column, row))};
+    return seen.slopes;
+  }
+
+  struct Seen {
+    std::size_t node = static_cast<std::size_t>(-1);
+    PatchSlopes<RectanglePatch> slopes;
+  };
   const FixedGrid& grid_;
+  std::vector<Seen> seen_ = std::vector<Seen>(256);
 };
 
 /// Is the triangulated area convex: one border, turning left throughout?
@@ -106,7 +119,8 @@ class TinSurface {
       const Pieces pieces(terrain_, edges_, t, per_unit_);
       for (std::size_t p = 0; p < pieces.nets.size(); ++p) {
         if (!strip.touches(frame_corners<Patch>(pieces.frames[p]))) continue;
-        if (!grows_across<Patch>(pieces.nets[p], pieces.frames[p], strip, kHalvings, 1, steepest)) return false;
+        if (!grows_across(PatchSlopes<Patch>(pieces.nets[p]), pieces.frames[p], strip, kHalvings, 1, steepest))
+          return false;
       }
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t neighbor = tin.neighbors[t][k];

@@ -43,33 +43,47 @@ auto frame_corners(const Frame& f) {
     return std::array<Vec2, 4>{f.origin, f.origin + f.e1, f.origin + f.e1 + f.e2, f.origin + f.e2};
 }
 
+/// A patch's ordinates and those of its partial derivatives.
+template <class Patch>
+struct PatchSlopes {
+  typename Patch::template Net<double> net;
+  std::array<double, static_cast<std::size_t>(Patch::kGradients)> du, dv;
+  double largest_u = 0, largest_v = 0;  ///< magnitudes
+
+  PatchSlopes() = default;
+  explicit PatchSlopes(const typename Patch::template Net<double>& ordinates) : net(ordinates) {
+    Patch::template gradients<double>(net, du, dv);
+    for (std::size_t i = 0; i < du.size(); ++i) {
+      largest_u = std::max(largest_u, std::abs(du[i]));
+      largest_v = std::max(largest_v, std::abs(dv[i]));
+    }
+  }
+};
+
 /// Does the polynomial grow along the strip's left everywhere in the part of the patch that the strip may touch?
 /// `steepest`: raised to the largest growth, in ordinates a local unit. The patch is halved `depth` times at most.
 template <class Patch>
-bool grows_across(const typename Patch::template Net<double>& net, const Frame& frame, const Strip& strip, int depth,
-                  double scale, double& steepest) {
-  std::array<double, Patch::kGradients> du{}, dv{};
-  Patch::template gradients<double>(net, du, dv);
+bool grows_across(const PatchSlopes<Patch>& patch, const Frame& frame, const Strip& strip, int depth, double scale,
+                  double& steepest) {
   const Vec2 d = frame.direction(strip.left());
-  double low = 1e300, high = -1e300, size = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(Patch::kGradients); ++i) {
-    const double a = d.x * du[i], b = d.y * dv[i];
-    low = std::min(low, a + b);
-    high = std::max(high, a + b);
-    size = std::max(size, std::abs(a) + std::abs(b));
+  double low = 1e300, high = -1e300;
+  for (std::size_t i = 0; i < patch.du.size(); ++i) {
+    const double growth = d.x * patch.du[i] + d.y * patch.dv[i];
+    low = growth < low ? growth : low;
+    high = growth > high ? growth : high;
   }
-  if (low > 1e-12 * size) {
+  if (low > 1e-12 * (std::abs(d.x) * patch.largest_u + std::abs(d.y) * patch.largest_v)) {
     steepest = std::max(steepest, Patch::kDegree * high / scale);
     return true;
   }
   if (depth == 0) return false;
   std::array<typename Patch::template Net<double>, 4> nets;
-  Patch::template split<double>(net, nets);
+  Patch::template split<double>(patch.net, nets);
   for (int c = 0; c < 4; ++c) {
     const Frame child = Patch::child_frame(frame, c);
     if (!strip.touches(frame_corners<Patch>(child))) continue;
-    if (!grows_across<Patch>(nets[static_cast<std::size_t>(c)], child, strip, depth - 1,
-                             scale * (1 << Patch::kBitsADepth), steepest))
+    if (!grows_across(PatchSlopes<Patch>(nets[static_cast<std::size_t>(c)]), child, strip, depth - 1,
+                      scale * (1 << Patch::kBitsADepth), steepest))
       return false;
   }
   return true;

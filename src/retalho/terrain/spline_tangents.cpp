@@ -104,25 +104,35 @@ void tangents_along_rows(std::span<const double> values, GridShape shape, const 
 
 void tangents_along_columns(std::span<const double> values, GridShape shape, const Mask& valid, SplineEnds ends,
                             std::span<double> out, const Context& context) {
-  constexpr int kBlock = 64;
+  constexpr int kBlock = 64, kRows = 128;
   const int rows = shape.rows, columns = shape.columns;
   const auto stride = static_cast<std::ptrdiff_t>(columns);
   const auto blocks = static_cast<std::size_t>((columns + kBlock - 1) / kBlock);
   parallel_chunks(blocks, 1, context, [&](std::size_t from, std::size_t to) {
+    std::vector<double> copy(static_cast<std::size_t>(kBlock * (kRows + 2 * kSplineHalo)));
     for (std::size_t b = from; b < to; ++b) {
       const int left = static_cast<int>(b) * kBlock, width = std::min(kBlock, columns - left);
       const double* z = values.data() + left;
       double* m = out.data() + left;
-      // The endless rule wherever the grid is deep enough; what is near an end or a void is done again below.
-      for (int r = kSplineHalo; r < rows - kSplineHalo; ++r) {
-        std::array<double, kBlock> sum{};
-        for (int k = kSplineHalo; k >= 1; --k) {
-          const double* below = z + stride * (r + k);
-          const double* above = z + stride * (r - k);
-          for (int x = 0; x < width; ++x)
-            sum[static_cast<std::size_t>(x)] = sum[static_cast<std::size_t>(x)] * kDecay + (below[x] - above[x]);
+      // The endless rule wherever the grid is deep enough; what is near an end or a void is done again below. Rows are
+      // copied side by side first: a grid whose rows are a power of two long would use one corner of the cache only.
+      for (int top = kSplineHalo; top < rows - kSplineHalo; top += kRows) {
+        const int count = std::min(kRows, rows - kSplineHalo - top);
+        for (int r = 0; r < count + 2 * kSplineHalo; ++r) {
+          const double* source = z + stride * (top - kSplineHalo + r);
+          std::copy(source, source + width, copy.data() + r * kBlock);
         }
-        for (int x = 0; x < width; ++x) m[stride * r + x] = sum[static_cast<std::size_t>(x)] * kWeight;
+        for (int r = 0; r < count; ++r) {
+          std::array<double, kBlock> sum{};
+          const double* centre = copy.data() + (r + kSplineHalo) * kBlock;
+          for (int k = kSplineHalo; k >= 1; --k) {
+            const double* below = centre + k * kBlock;
+            const double* above = centre - k * kBlock;
+            for (std::size_t x = 0; x < kBlock; ++x) sum[x] = sum[x] * kDecay + (below[x] - above[x]);
+          }
+          double* row = m + stride * (top + r);
+          for (int x = 0; x < width; ++x) row[x] = sum[static_cast<std::size_t>(x)] * kWeight;
+        }
       }
       for (int x = 0; x < width; ++x) {
         const auto is_valid = [&](int r) { return valid.empty() || valid.get(left + x, r); };
