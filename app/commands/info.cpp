@@ -153,6 +153,33 @@ Json model_info(const Options& options, const TetraQuad& surface) {
   return result;
 }
 
+Json model_info(const Options& options, const PatchSet& set) {
+  std::size_t nodes = 0, triangles = 0;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+  Json names = Json::array();
+  for (const Patch& patch : set.patches) {
+    nodes += patch.positions.size();
+    triangles += patch.domain.triangles.size();
+    names.push_back(patch.name);
+    for (const Vec3 p : patch.positions) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  }
+  return {{"file", options.file},
+          {"kind", "patches"},
+          {"recovery", recovery_name(set.patches[0].recovery)},
+          {"patches", set.patches.size()},
+          {"names", names},
+          {"nodes", nodes},
+          {"triangles", triangles},
+          {"bytes", std::filesystem::file_size(options.file)},
+          {"bounds", {low.x, low.y, high.x, high.y}},
+          {"minimum", low.z},
+          {"maximum", high.z}};
+}
+
 Json info(const Options& options, const Context& context) {
   if (is_model_file(options.file))
     return std::visit([&](const auto& shape) { return model_info(options, shape); }, load_model(options.file));

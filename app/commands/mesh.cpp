@@ -1,13 +1,16 @@
 // retalho mesh: a model as triangles that other tools open.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <type_traits>
 #include <variant>
 
 #include "inputs.h"
+#include "render_patches.h"
 #include "retalho/core/error.h"
+#include "retalho/mesh/patch_mesh.h"
 #include "retalho/mesh/terrain_mesh.h"
 #include "retalho/mesh/tetraquad_mesh.h"
 #include "table.h"
@@ -35,6 +38,19 @@ void run(const Program& program, const Options& options) {
             program.say(fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)",
                                     tolerance));
           return mesh_terrain(shape, {.tolerance = tolerance}, context);
+        } else if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, PatchSet>) {
+          const std::vector<PatchSurface> surfaces = surfaces_of(shape.patches, context);
+          if (tolerance <= 0) {
+            for (const Patch& patch : shape.patches)
+              tolerance = std::max(tolerance, 1e-3 * control_size(patch.positions));
+            program.say(
+                fmt::format("--tolerance {:.6g}: a thousandth of the size (chosen, as none was given)", tolerance));
+          }
+          double deviation = 0;
+          TriangleMesh triangles = mesh_patch_surfaces(shape.patches, surfaces, tolerance, &deviation);
+          if (deviation > tolerance) program.say(fmt::format("triangles within {:.3g} of the surface", deviation));
+          tolerance = deviation;
+          return triangles;
         } else {
           TetraQuadMeshNotes notes;
           const TetraQuadField field(shape);

@@ -6,8 +6,10 @@
 #include <filesystem>
 
 #include "inputs.h"
+#include "render_patches.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/patch_mesh.h"
+#include "retalho/model/model.h"
 #include "retalho/patch/document.h"
 #include "retalho/patch/joins.h"
 #include "retalho/patch/parameterize.h"
@@ -19,8 +21,6 @@ namespace retalho::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const std::vector<std::string> kStyles = {"shaded", "lines", "isophotes", "zebra", "gaussian", "mean"};
 
 struct Options {
   std::string input, recovery = "smooth", layout = "delaunay", samples = "parameter", weights = "mean-value",
@@ -67,6 +67,11 @@ std::vector<Patch> make_patches(const Program& program, const Options& options, 
   PatchOptions made;
   made.recovery = static_cast<Recovery>(choose("--recovery", options.recovery, {"barycentric", "spr", "smooth"}));
   made.layout = static_cast<DomainLayout>(choose("--layout", options.layout, {"delaunay", "midpoint"}));
+  if (is_model_file(options.input)) {  // as it was saved
+    Model model = load_model(options.input);
+    if (auto* set = std::get_if<PatchSet>(&model)) return std::move(set->patches);
+    throw BadInput(fmt::format("'{}' holds no patches", options.input), options.input);
+  }
   if (ends_with(options.input, ".ply") || ends_with(options.input, ".obj"))
     return from_mesh(program, options, made.recovery, context);
   if (!options.divisions.empty() && options.divisions.size() != 1 && options.divisions.size() != 3)
@@ -133,13 +138,15 @@ void write_outputs(const Program& program, const Options& options, const std::ve
                    const std::vector<PatchSurface>& surfaces, const Context& context) {
   std::vector<Patch> fine;
   PatchPictureOptions picture;
-  picture.style = static_cast<PatchStyle>(choose("--style", options.style, kStyles));
+  picture.style = parse_patch_style("--style", options.style);
   std::tie(picture.width, picture.height) = parse_size("--size", options.size);
   picture.from = options.from;
   picture.elevation = options.elevation;
   for (const std::string& out : options.outputs) {
     context.check();
-    if (ends_with(out, ".png")) {
+    if (ends_with(out, ".retalho")) {
+      save_model(PatchSet{patches}, out, program.overwrite);
+    } else if (ends_with(out, ".png")) {
       write_png(draw_patches(patches, surfaces, picture, context), out, program.overwrite);
     } else {
       if (fine.empty())
@@ -153,9 +160,9 @@ void write_outputs(const Program& program, const Options& options, const std::ve
 
 void run(const Program& program, const Options& options) {
   for (const std::string& out : options.outputs)
-    check_output(program, out, {".ply", ".obj", ".stl", ".glb", ".png"}, {options.input});
+    check_output(program, out, {".retalho", ".ply", ".obj", ".stl", ".glb", ".png"}, {options.input});
   if (options.refine < 1 || options.refine > 1000) throw UsageError("--refine: 1 to 1000", {}, "--refine");
-  choose("--style", options.style, kStyles);
+  parse_patch_style("--style", options.style);
   parse_size("--size", options.size);
   if (!(std::abs(options.elevation) <= 90) || !std::isfinite(options.from))
     throw UsageError("--elevation: -90 to 90 degrees; --from: a number of degrees", {}, "--elevation");
@@ -218,15 +225,20 @@ void run(const Program& program, const Options& options) {
 
 void add_patch(CLI::App& root, Program& program) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = add_command(root, program, "patch", "Three boundary curves to a triangular parametric surface",
-                                  "retalho patch examples/patches/octant.json -o octant.glb --refine 4\n"
-                                  "retalho patch examples/patches/hull.json -o hull.png --style zebra\n"
-                                  "retalho patch sides.json -o mesh.ply --divisions 20,30,25 --snap 0.01\n"
-                                  "retalho patch scan.ply -o smooth.glb --corners 0,17,230 --refine 4");
-  command->add_option("FILE", o->input, "Patches (.json, docs/triangular-patches.md), or a mesh of a disk (.ply .obj)")
+  CLI::App* command =
+      add_command(root, program, "patch", "Three boundary curves to a triangular parametric surface",
+                  "retalho patch examples/patches/octant.json -o octant.retalho -o octant.glb --refine 4\n"
+                  "retalho patch examples/patches/hull.json -o hull.png --style zebra\n"
+                  "retalho patch sides.json -o mesh.ply --divisions 20,30,25 --snap 0.01\n"
+                  "retalho patch scan.ply -o smooth.glb --corners 0,17,230 --refine 4");
+  command
+      ->add_option("FILE", o->input,
+                   "Patches (.json, docs/triangular-patches.md; .retalho), or a mesh of a disk (.ply .obj)")
       ->required()
       ->type_name("");
-  command->add_option("-o,--output", o->outputs, "Triangles (.ply .obj .stl .glb) or a picture (.png); may be repeated")
+  command
+      ->add_option("-o,--output", o->outputs,
+                   "A model (.retalho), triangles (.ply .obj .stl .glb) or a picture (.png); may be repeated")
       ->type_name("FILE")
       ->take_all()
       ->expected(1);

@@ -9,6 +9,7 @@
 
 #include "fitting.h"
 #include "inputs.h"
+#include "render_patches.h"
 #include "render_tetraquad.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
@@ -32,6 +33,7 @@ struct Options {
   bool captions = true;
   GridFlags grid;
   TetraQuadFlags tetraquad;
+  std::string style = "lines";
 };
 
 /// One of the inputs: a grid or a model, ready to be drawn. Not to be moved: the source refers to it.
@@ -142,12 +144,13 @@ Image draw(const Options& options, const Scene& scene, const Layout& layout, con
   return draw_perspective(source, scene.georef, scene.extent, layout.width, layout.height, perspective, color, context);
 }
 
-bool is_tetraquad(const std::string& path) {
-  return is_model_file(path) && std::holds_alternative<TetraQuad>(load_model(path));
+bool holds_panels(const std::string& path) {
+  if (!is_model_file(path)) return false;
+  return !std::holds_alternative<Terrain>(load_model(path));
 }
 
-/// Only TetraQuad models: drawn by ray casting.
-void run_tetraquad(const Program& program, const Options& options) {
+/// Only models in space: TetraQuad surfaces, by ray casting, and patches.
+void run_in_space(const Program& program, const Options& options) {
   const Context context = program.context();
   const auto count = static_cast<int>(options.inputs.size());
   const int lines = options.captions ? 2 : 0;
@@ -159,13 +162,21 @@ void run_tetraquad(const Program& program, const Options& options) {
   std::vector<Panel> panels;
   for (const std::string& path : options.inputs) {
     Model model = load_any_model(path);
-    const TetraQuad* surface = std::get_if<TetraQuad>(&model);
-    if (surface == nullptr)
-      throw UsageError(fmt::format("'{}' is no TetraQuad model: they are drawn among themselves", path), path);
+    const std::string name = std::filesystem::path(path).filename().string();
     Panel panel;
-    panel.picture =
-        draw_panel(*surface, options.tetraquad, options.from, options.elevation, layout.width, layout.height, context);
-    if (options.captions) panel.caption = {std::filesystem::path(path).filename().string(), kind_text(*surface)};
+    std::string words;
+    if (const auto* surface = std::get_if<TetraQuad>(&model)) {
+      panel.picture = draw_panel(*surface, options.tetraquad, options.from, options.elevation, layout.width,
+                                 layout.height, context);
+      words = kind_text(*surface);
+    } else if (const auto* set = std::get_if<PatchSet>(&model)) {
+      panel.picture =
+          draw_patch_panel(*set, options.style, options.from, options.elevation, layout.width, layout.height, context);
+      words = kind_text(*set);
+    } else {
+      throw UsageError(fmt::format("'{}' is a terrain: terrains are drawn among themselves", path), path);
+    }
+    if (options.captions) panel.caption = {name, words};
     panels.push_back(std::move(panel));
   }
   const Image sheet = compose(layout, panels);
@@ -186,7 +197,8 @@ void run(const Program& program, const Options& options) {
   std::vector<std::string> files = options.inputs;
   if (!options.error.empty()) files.push_back(options.error);
   check_output(program, options.output, {".png"}, files);
-  if (is_tetraquad(options.inputs.front())) return run_tetraquad(program, options);
+  parse_patch_style("--style", options.style);
+  if (holds_panels(options.inputs.front())) return run_in_space(program, options);
   const Context context = program.context();
   std::vector<std::unique_ptr<Shape>> shapes;
   for (const std::string& path : options.inputs) shapes.push_back(load_shape(program, path, options.grid, context));
@@ -259,6 +271,8 @@ void add_render(CLI::App& root, Program& program) {
       ->type_name("ALT");
   command->add_flag("!--no-captions", options->captions, "No words under the pictures");
   add_grid_flags(*command, options->grid);
+  command->add_option("--style", options->style, "Patches: shaded, lines (default), isophotes, zebra, gaussian, mean")
+      ->type_name("KIND");
   add_tetraquad_flags(*command, options->tetraquad);
   command->callback([options, &program] { run(program, *options); });
 }

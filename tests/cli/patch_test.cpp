@@ -87,5 +87,26 @@ TEST(PatchCommand, AMeshGetsParametersAndASurface) {
   EXPECT_NE(parts.err.find("2 separate parts"), std::string::npos) << parts.err;
 }
 
+TEST(PatchCommand, TheModelFileServesTheOtherCommands) {
+  const ScratchFolder folder;
+  const std::string hull = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/hull.json";
+  ASSERT_EQ(run(folder, "patch " + hull + " -o h.retalho --divisions 8").code, 0);
+  const auto info = run(folder, "info h.retalho --json").json();
+  EXPECT_EQ(info.at("kind"), "patches");
+  EXPECT_EQ(info.at("patches"), 4);
+  EXPECT_EQ(info.at("recovery"), "smooth");
+  const Outcome mesh = run(folder, "mesh h.retalho -o h.stl --tolerance 0.002 --json");
+  ASSERT_EQ(mesh.code, 0) << mesh.err;
+  EXPECT_EQ(mesh.json().at("components"), 1);
+  EXPECT_EQ(mesh.json().at("watertight"), true);
+  EXPECT_LE(mesh.json().at("tolerance").get<double>(), 0.002);
+  EXPECT_GT(mesh.json().at("triangles").get<int>(), 256);
+  ASSERT_EQ(run(folder, "render h.retalho -o h.png --style isophotes --size 200x200").code, 0);
+  const auto before = run(folder, "patch " + hull + " --divisions 8 --json --at 0.2,0.3").json(),
+             after = run(folder, "patch h.retalho --json --at 0.2,0.3").json();
+  EXPECT_EQ(before.at("points"), after.at("points"));
+  EXPECT_EQ(run(folder, "sample h.retalho -o x.tif").code, 3);
+}
+
 }  // namespace
 }  // namespace retalho::test

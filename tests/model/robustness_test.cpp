@@ -16,6 +16,7 @@
 #include "retalho/model/envelope.h"
 #include "retalho/model/model_codec.h"
 #include "retalho/model/numbers.h"
+#include "support/sample_patches.h"
 #include "support/sample_terrain.h"
 #include "support/sample_tetraquad.h"
 
@@ -53,6 +54,7 @@ std::vector<std::string> contents() {
                                                .rows = 4,
                                                .mask = true})));
   all.push_back(encode_content(test::sample_tetraquad()));
+  all.push_back(encode_content(test::sample_patches(1)));
   return all;
 }
 

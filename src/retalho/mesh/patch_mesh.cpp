@@ -1,8 +1,12 @@
 #include "retalho/mesh/patch_mesh.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <map>
 #include <tuple>
+
+#include "retalho/patch/joins.h"
 
 namespace retalho {
 namespace {
@@ -44,6 +48,30 @@ TriangleMesh mesh_patches(std::span<const Patch> patches, bool weld) {
   }
   for (Vec3& n : mesh.normals) n = norm(n) > 0 ? normalized(n) : Vec3{0, 0, 1};
   return mesh;
+}
+
+TriangleMesh mesh_patch_surfaces(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
+                                 double tolerance, double* deviation, std::size_t* factor) {
+  std::vector<Patch> fine;
+  for (std::size_t n = 1;; n *= 2) {
+    fine.clear();
+    double worst = 0;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      fine.push_back(refine(patches[i], surfaces[i], n));
+      const Domain& domain = fine[i].domain;
+      for (const auto& t : domain.triangles)
+        for (const auto& [a, b, c] :
+             {std::array<double, 3>{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}}) {
+          const Vec2 uv = a * domain.parameters[t[0]] + b * domain.parameters[t[1]] + c * domain.parameters[t[2]];
+          const Vec3 flat = a * fine[i].positions[t[0]] + b * fine[i].positions[t[1]] + c * fine[i].positions[t[2]];
+          worst = std::max(worst, norm(surfaces[i].point(uv) - flat));
+        }
+    }
+    if (worst > tolerance && tolerance > 0 && n < 64) continue;
+    if (deviation) *deviation = worst;
+    if (factor) *factor = n;
+    return mesh_patches(fine);
+  }
 }
 
 }  // namespace retalho

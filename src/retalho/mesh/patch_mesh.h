@@ -4,7 +4,7 @@
 #include <span>
 
 #include "retalho/mesh/mesh.h"
-#include "retalho/patch/patch.h"
+#include "retalho/patch/surface.h"
 
 namespace retalho {
 
@@ -12,5 +12,10 @@ namespace retalho {
 /// triangles at a node (by area). `normals` and `texture` may want a node of their own on each patch: with `weld` nodes
 /// of different patches' sides that are the same to the last bit become one (their texture is then the first patch's).
 TriangleMesh mesh_patches(std::span<const Patch> patches, bool weld = true);
+
+/// One mesh of all surfaces, every node's triangle cut into n^2 with the least n of 1, 2, 4, ... 64 for which the
+/// triangles' middles are within `tolerance` of the surface (0: n = 1). `deviation` gets what was reached, `factor` n.
+TriangleMesh mesh_patch_surfaces(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
+                                 double tolerance, double* deviation = nullptr, std::size_t* factor = nullptr);
 
 }  // namespace retalho

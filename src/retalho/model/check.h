@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "retalho/patch/patch.h"
 #include "retalho/terrain/terrain.h"
 #include "retalho/tetraquad/tetraquad.h"
 
@@ -23,5 +24,10 @@ std::string find_fault(const Terrain& terrain, bool neighbors_built = false);
 /// The same for a TetraQuad: finite numbers, a positive step, at least one tetrahedron, one quadric a vertex, and the
 /// mesh that its `places` make.
 std::string find_fault(const TetraQuad& surface);
+
+/// The same for patches: finite numbers, parameters in the parameter triangle that its triangles cover once (by area),
+/// sides that run from corner to corner along their nodes, and curves that can be evaluated and pass through the nodes
+/// to 1e-6 of the size.
+std::string find_fault(const PatchSet& set);
 
 }  // namespace retalho

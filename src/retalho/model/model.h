@@ -6,13 +6,14 @@
 #include <string_view>
 #include <variant>
 
+#include "retalho/patch/patch.h"
 #include "retalho/terrain/terrain.h"
 #include "retalho/tetraquad/tetraquad.h"
 
 namespace retalho {
 
 /// What a model file can hold. Further kinds of surface become further alternatives.
-using Model = std::variant<Terrain, TetraQuad>;
+using Model = std::variant<Terrain, TetraQuad, PatchSet>;
 
 /// What a file says of itself.
 struct ModelFileNotes {

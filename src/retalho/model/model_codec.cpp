@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "retalho/core/error.h"
+#include "retalho/model/patch_codec.h"
 #include "retalho/model/terrain_codec.h"
 #include "retalho/model/tetraquad_codec.h"
 
@@ -43,6 +44,8 @@ std::string encode_content(const Model& model, bool checked) {
       [&](const auto& shape) -> std::pair<fb::Surface, flatbuffers::Offset<void>> {
         if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Terrain>)
           return {fb::Surface::TerrainSurface, encode_terrain(builder, shape, checked).Union()};
+        else if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, PatchSet>)
+          return {fb::Surface::PatchSetSurface, encode_patches(builder, shape, checked).Union()};
         else
           return {fb::Surface::TetraQuadSurface, encode_tetraquad(builder, shape, checked).Union()};
       },
@@ -67,6 +70,8 @@ Model decode_content(std::string_view content, std::string* created_by) {
       return decode_terrain(*file.surface_as_TerrainSurface());
     case fb::Surface::TetraQuadSurface:
       return decode_tetraquad(*file.surface_as_TetraQuadSurface());
+    case fb::Surface::PatchSetSurface:
+      return decode_patches(*file.surface_as_PatchSetSurface());
     default:
       throw CannotRead(fmt::format("it holds a kind of surface ({}) that this Retalho does not know: update Retalho",
                                    static_cast<int>(file.surface_type())),

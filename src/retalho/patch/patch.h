@@ -24,6 +24,11 @@ struct Patch {
   Recovery recovery = Recovery::smooth;
 };
 
+/// Patches that belong together: what a file of them holds.
+struct PatchSet {
+  std::vector<Patch> patches;
+};
+
 struct PatchOptions {
   std::array<std::size_t, 3> divisions = {32, 32, 32};  ///< edges of each side
   DomainLayout layout = DomainLayout::delaunay;         ///< where the divisions differ
