@@ -7,6 +7,7 @@
 
 #include "level/contour_support.h"
 #include "retalho/core/error.h"
+#include "retalho/raster/io.h"
 #include "support/errors.h"
 
 namespace retalho {
@@ -58,7 +59,7 @@ void expect_sound(const Raster& raster, const ContourSet& set) {
 
 TEST(Contours, LinesAreClosedOrEndOnTheBorder) {
   test::Random random;
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < 40 * test::soak(); ++round) {
     const Raster raster = noise(random, 9, 90);
     const BicubicGrid grid = make_bicubic(raster);
     const ContourSet set =
@@ -70,12 +71,15 @@ TEST(Contours, LinesAreClosedOrEndOnTheBorder) {
 
 TEST(Contours, ComponentsEqualABruteForceCount) {
   test::Random random;
-  for (int round = 0; round < 60; ++round) {
-    const Raster raster = round % 2 == 0 ? noise(random, 6, 7) : hills(random, 20, 20);
+  for (int round = 0; round < 1000 * test::soak(); ++round) {
+    const Raster raster = round % 20 == 0   ? noise(random, 6, 7)
+                          : round % 50 == 1 ? hills(random, 20, 20)
+                          : round % 2 == 0  ? noise(random, 3, 3)
+                                            : hills(random, 4, 5);
     const BicubicGrid grid = make_bicubic(raster);
     const std::vector<double> levels{1.2345, 3.3321, 5.0171, 7.7177};
     const ContourSet set = trace_contours(grid, levels, {.tolerance = 0.05, .simplify = false});
-    const int k = round % 2 == 0 ? 96 : 40;
+    const int k = raster.columns < 20 ? 96 : 40;
     const auto columns = static_cast<std::size_t>((raster.columns - 1) * k + 1),
                rows = static_cast<std::size_t>((raster.rows - 1) * k + 1);
     std::vector<double> z(columns * rows);
@@ -113,6 +117,82 @@ TEST(Contours, ChordsStayWithinTheToleranceAndTheTube) {
       }
     }
   }
+}
+
+double distance(Vec2 p, const test::Segment& s) {
+  const Vec2 d = s.b - s.a;
+  const double t = norm2(d) > 0 ? std::clamp(dot(p - s.a, d) / norm2(d), 0.0, 1.0) : 0;
+  return norm(p - s.a - t * d);
+}
+
+/// Largest distance from points of `from`'s lines to the nearest line of the same level of `to`.
+double one_way(const ContourSet& from, const ContourSet& to) {
+  const std::vector<test::Segment> a = test::segments(from), b = test::segments(to);
+  double worst = 0;
+  for (const test::Segment& s : a)
+    for (const double t : {0.0, 0.5}) {
+      const Vec2 p = s.a + t * (s.b - s.a);
+      double nearest = 1e300;
+      for (const test::Segment& other : b)
+        if (other.level == s.level) nearest = std::min(nearest, distance(p, other));
+      worst = std::max(worst, nearest);
+    }
+  return worst;
+}
+
+TEST(Contours, LinesAndLevelSetsAreWithinTheToleranceBothWays) {
+  test::Random random;
+  for (int round = 0; round < 16; ++round) {
+    const Raster raster = round % 2 == 0 ? noise(random, 7, 7) : hills(random, 14, 14);
+    const BicubicGrid grid = make_bicubic(raster);
+    const std::vector<double> levels{1.2345, 4.3321, 7.0171};
+    // The reference is a hundred times as close to the level set.
+    const double tolerance = 0.2;
+    const ContourSet truth = trace_contours(grid, levels, {.tolerance = tolerance / 100, .simplify = false});
+    for (const bool simplify : {false, true}) {
+      const ContourSet set = trace_contours(grid, levels, {.tolerance = tolerance, .simplify = simplify});
+      EXPECT_EQ(set.lines.size(), truth.lines.size());
+      EXPECT_LE(one_way(set, truth), 1.01 * tolerance);
+      EXPECT_LE(one_way(truth, set), 1.01 * tolerance);
+      if (simplify) {
+        EXPECT_LT(set.points.size(), truth.points.size() / 2);
+      }
+    }
+  }
+}
+
+TEST(Contours, PlateausGiveTheirOutlineOnce) {
+  // A lake at 10 in a rising plain, and an island in it; the level is the lake's own height.
+  const Raster raster = contour_raster(30, 30, [](int c, int r) {
+    const double d = std::hypot(c - 14.5, r - 14.5);
+    return d < 4 ? 12.0 : d < 10 ? 10.0 : std::floor(d);
+  });
+  const ContourSet set = trace_contours(make_bicubic(raster), {10}, {.tolerance = 0.05});
+  for (const ContourLine& line : set.lines) EXPECT_TRUE(line.closed);
+  EXPECT_LE(set.lines.size(), 2U);
+  // Far from any flat the level 11 is an ordinary line: one ring around the lake, one around the island.
+  EXPECT_EQ(trace_contours(make_bicubic(raster), {11.5}, {.tolerance = 0.05}).lines.size(), 2U);
+}
+
+TEST(Contours, AHeightOnTheGridLineOrAConstantGridIsNoTrouble) {
+  const Raster plane = contour_raster(9, 9, [](int c, int) { return c; });
+  EXPECT_EQ(trace_contours(make_bicubic(plane, {.keep_flats = false}), {1, 2, 3, 4, 5, 6, 7, 8}, {.tolerance = 0.1})
+                .lines.size(),
+            8U);
+  const Raster constant = contour_raster(9, 9, [](int, int) { return 10.0; });
+  EXPECT_EQ(trace_contours(make_bicubic(constant), {10}, {.tolerance = 0.1}).lines.size(), 0U);
+  const Raster saddle = contour_raster(9, 9, [](int c, int r) { return (c - 4.0) * (r - 4.0); });
+  const ContourSet set = trace_contours(make_bicubic(saddle, {.keep_flats = false}), {0}, {.tolerance = 0.1});
+  EXPECT_EQ(set.lines.size(), 2U);  // the high ground is joined through the saddle
+  EXPECT_EQ(test::count_meetings(set, 1), 0U);
+}
+
+TEST(Contours, TheSeaAtALevelComesOutClean) {
+  RETALHO_DATA_FILE(path, "dem/N48W125.hgt.zip");
+  const Raster raster = read_raster(path);
+  const ContourSet set = trace_contours(make_bicubic(raster), {0}, {.tolerance = 2});
+  EXPECT_LT(set.lines.size(), 600U);
+  EXPECT_EQ(test::count_meetings(set, 200), 0U);
 }
 
 TEST(Contours, HighGroundLiesToTheLeft) {

@@ -28,7 +28,9 @@ double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, Spl
   // Forward elimination: m(k) = rest[k] - upper[k] m(k+1).
   std::array<double, 2 * kSplineHalo + 1> upper{}, rest{};
   const int size = last - first + 1;
-  if (first == 0) {
+  // A run that ends exactly kSplineHalo away counts as cut there: what lies behind is not looked at.
+  const bool starts = at - first < kSplineHalo, stops = last - at < kSplineHalo;
+  if (starts) {
     if (ends == SplineEnds::not_a_knot) {
       upper[0] = 2;
       rest[0] = (-5 * value(0) + 4 * value(1) + value(2)) / 2;
@@ -44,7 +46,7 @@ double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, Spl
     rest[place(k)] = (3 * (value(first + k + 1) - value(first + k - 1)) - rest[place(k - 1)]) * pivot;
   }
   double m = 0;
-  if (last == n - 1) {
+  if (stops) {
     const double before = rest[place(size - 2)], slope = upper[place(size - 2)];
     if (ends == SplineEnds::not_a_knot) {
       const double right = (5 * value(n - 1) - 4 * value(n - 2) - value(n - 3)) / 2;  // m(n-1) + 2 m(n-2)
