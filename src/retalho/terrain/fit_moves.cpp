@@ -112,9 +112,7 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
   }
 }
 
-bool exchange(FitState& state, double share, const CgLimits& limits, const Context& context) {
-  const FitSnapshot before(state);
-  const double cost_before = state.cost(context);
+void exchange(FitState& state, double share, const CgLimits& limits, const Context& context) {
   const std::vector<double> costs = state.costs(context);
   const std::size_t n = state.mesh.vertex_count();
   std::vector<double> star_cost(n, 0.0);
@@ -144,9 +142,6 @@ bool exchange(FitState& state, double share, const CgLimits& limits, const Conte
     state.refresh(context);
     state.solve(limits, context);
   }
-  if (state.mesh.vertex_count() == n && state.cost(context) < cost_before) return true;
-  before.restore(state);
-  return false;
 }
 
 }  // namespace retalho

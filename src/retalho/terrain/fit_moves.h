@@ -22,7 +22,7 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
 bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context);
 
 /// Removes the share of the vertices whose stars cost least, no two of them neighbours, and inserts as many at
-/// centroids. Everything is put back if the objective rose. True if it helped.
-bool exchange(FitState& state, double share, const CgLimits& limits, const Context& context);
+/// centroids. Whether that helps shows after a relocation.
+void exchange(FitState& state, double share, const CgLimits& limits, const Context& context);
 
 }  // namespace retalho

@@ -10,11 +10,11 @@
 namespace retalho {
 namespace {
 
-constexpr double kFewViolate = 0.3;  // of the triangles: where growing for the sum of squares ends
-constexpr double kWorst = 0.4;       // of the violating triangles are refined in a round
-constexpr int kReweightings = 4;     // a round
-constexpr int kPatience = 60;        // rounds until violating cells are held one by one
-constexpr double kLateSlope = 0.015, kLateFairness = 1e-4;  // the weights once the tolerance alone counts
+constexpr double kFewViolate = 0.3;   // of the triangles: where growing for the sum of squares ends
+constexpr double kWorst = 0.4;        // of the violating triangles are refined in a round
+constexpr int kReweightings = 4;      // a round
+constexpr int kPatience = 60;         // rounds until violating cells are held one by one
+constexpr double kLateSlope = 0.015;  // the weights once the tolerance alone counts
 
 /// The largest error of a triangle and its cell.
 struct Worst {
@@ -33,10 +33,7 @@ class Refinement {
       started_ = true;
       grow();
       better(s_, options_.relocations, options_.exchanges, context_);
-      if (s_.kind != SurfaceKind::linear) {
-        s_.weights.slope = std::min(s_.weights.slope, kLateSlope);
-        s_.weights.fairness = std::min(s_.weights.fairness, kLateFairness);
-      }
+      s_.weights.slope = std::min(s_.weights.slope, kLateSlope);
       s_.cell_weights.assign(s_.grid.z.size(), 1.0F);
       s_.refresh(context_, true);
       s_.solve(kRoughSolve, context_);

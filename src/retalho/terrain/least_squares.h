@@ -18,7 +18,7 @@ struct LeastSquaresOptions {
   bool heights_only = false;  ///< z-only: gradients follow the heights as GradientKind::normals, so that the model
                               ///< needs no more numbers than a flat one
   double slope_weight = 0.1;  ///< 0 or more; not used by linear surfaces
-  double fairness = 1e-3;     ///< 0 or more; not used by linear surfaces
+  double fairness = 1e-5;     ///< 0 or more; not used by linear surfaces
   double tolerance = 1e-7;    ///< where conjugate gradients stop, relative
   int iterations = 1000;      ///< and after how many steps at most
 };

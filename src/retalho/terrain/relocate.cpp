@@ -13,7 +13,7 @@ namespace {
 
 using greedy::Cell;
 
-constexpr double kLeastArea = 1.4;       // cells
+constexpr double kLeastArea = 0.5;       // cells
 constexpr double kLeastFullness = 0.05;  // area over the square of the longest side
 
 /// What a star costs when its vertex's data are the best for it.
@@ -81,9 +81,9 @@ class Sweep {
  public:
   Sweep(FitState& state, double reach) : state_(state), reach_(reach) {}
 
-  /// How many vertices have moved.
-  std::size_t run(const Context& context) {
-    std::size_t moved = 0;
+  /// The vertices that have moved.
+  std::vector<std::uint32_t> run(const Context& context) {
+    std::vector<std::uint32_t> moved;
     for (const auto& color : colors(context)) {
       std::vector<Move> moves(color.size());
       parallel_chunks(color.size(), 4, context, [&](std::size_t begin, std::size_t end) {
@@ -91,7 +91,7 @@ class Sweep {
       });
       for (std::size_t k = 0; k < color.size(); ++k) {
         if (!moves[k].wanted) continue;
-        ++moved;
+        moved.push_back(color[k]);
         state_.mesh.displace(color[k], moves[k].to);
         state_.data[color[k]] = moves[k].data;
         CellMesh::Star star;
@@ -176,10 +176,42 @@ class Sweep {
 
 }  // namespace
 
+namespace {
+
+/// What the triangles around each vertex cost.
+std::vector<double> star_costs(const FitState& state, const Context& context) {
+  const std::vector<double> costs = state.costs(context);
+  std::vector<double> result(state.mesh.vertex_count(), 0.0);
+  for (std::size_t t = 0; t < costs.size(); ++t)
+    for (const std::uint32_t v : state.mesh.triangles()[t]) result[v] += costs[t];
+  return result;
+}
+
+}  // namespace
+
 bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context) {
+  constexpr double kWorse = 1.02;
   const FitSnapshot before(state);
   const double cost_before = state.cost(context);
-  if (Sweep(state, reach).run(context) == 0) return false;
+  const std::vector<double> stars_before = star_costs(state, context);
+  std::vector<std::uint32_t> moved = Sweep(state, reach).run(context);
+  // Flips and the neighbours' moves may have spoilt what each move promised: such vertices go back.
+  for (int attempt = 0; !moved.empty() && attempt < 3; ++attempt) {
+    state.mesh.restore();
+    state.refresh(context);
+    state.solve(limits, context);
+    const std::vector<double> stars = star_costs(state, context);
+    std::vector<std::uint32_t> back;
+    for (const std::uint32_t v : moved)
+      if (stars[v] > kWorse * stars_before[v] && state.mesh.can_move(v, before.mesh.cell(v))) back.push_back(v);
+    if (back.empty()) break;
+    for (const std::uint32_t v : back) {
+      if (!state.mesh.can_move(v, before.mesh.cell(v))) continue;
+      state.mesh.displace(v, before.mesh.cell(v));
+      state.data[v] = before.data[v];
+    }
+    std::erase_if(moved, [&](std::uint32_t v) { return state.mesh.cell(v) == before.mesh.cell(v); });
+  }
   state.mesh.restore();
   state.refresh(context);
   state.solve(limits, context);

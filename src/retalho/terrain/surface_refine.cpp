@@ -59,7 +59,7 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
 
 void better(FitState& state, int relocations, int exchanges, const Context& context) {
   constexpr double kExchanged = 0.05;  // of the vertices a round
-  double reach = 0.35;
+  double reach = 0.35, share = kExchanged;
   const auto sweep = [&](int done) {
     context.report("relocate", done / std::max(1.0, static_cast<double>(relocations + exchanges)));
     relocate(state, reach, kRoughSolve, context);
@@ -67,8 +67,13 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
   };
   for (int k = 0; k < relocations; ++k) sweep(k);
   for (int k = 0; k < exchanges; ++k) {
-    exchange(state, kExchanged, kRoughSolve, context);
-    sweep(relocations + k);
+    const FitSnapshot before(state);
+    const double cost = state.cost(context);
+    exchange(state, share, kRoughSolve, context);
+    sweep(relocations + k);  // judged together: new vertices are not yet at their best places
+    if (state.cost(context) < cost) continue;
+    before.restore(state);
+    share /= 2;
   }
 }
 

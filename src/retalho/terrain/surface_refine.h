@@ -19,7 +19,7 @@ struct SurfaceRefineOptions {
   int exchanges = 5;          ///< rounds of removal and re-insertion, each followed by a relocation
   double growth = 0.25;       ///< of the number of vertices a round
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions
-  double fairness = 1e-3;
+  double fairness = 1e-5;
 };
 
 /// Vertices are cells, inserted at the centroids of the squared errors, moved, removed and inserted elsewhere; heights
