@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
@@ -62,15 +63,14 @@ std::size_t split_dividing(std::vector<Vec3>& positions, std::vector<Triangle>& 
     return false;
   };
   std::size_t count = 0;
-  std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>> middles;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto key = std::minmax(a, b);
-    for (const auto& m : middles)
-      if (m.first == std::pair<std::uint32_t, std::uint32_t>(key)) return m.second;
-    positions.push_back(0.5 * (positions[a] + positions[b]));
-    middles.emplace_back(key, static_cast<std::uint32_t>(positions.size() - 1));
-    ++count;
-    return middles.back().second;
+    const auto [at, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(positions.size()));
+    if (fresh) {
+      positions.push_back(0.5 * (positions[a] + positions[b]));
+      ++count;
+    }
+    return at->second;
   };
   for (std::size_t t = 0; t < triangles.size(); ++t)  // halves come at the end and are looked at in their turn
     for (std::size_t k = 0; k < 3; ++k) {

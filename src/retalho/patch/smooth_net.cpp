@@ -14,19 +14,13 @@ constexpr std::size_t t_index(std::size_t i, std::size_t j) {
 static_assert(t_index(0, 1) == 3 && t_index(0, 2) == 4 && t_index(1, 0) == 5 && t_index(1, 2) == 6 &&
               t_index(2, 0) == 7 && t_index(2, 1) == 8);
 
-/// Control points of the micro-triangle (V_i, V_j, centre) opposite corner k, in the order of bernstein/triangle.h:
-/// 300 210 201 120 111 102 030 021 012 003.
-constexpr std::array<std::array<std::uint8_t, 10>, 3> make_micro() {
-  std::array<std::array<std::uint8_t, 10>, 3> out{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-    const std::size_t list[10] = {i, t_index(i, j), 9 + i, t_index(j, i), 12 + k, 15 + i, j, 9 + j, 15 + j, 18};
-    for (std::size_t n = 0; n < 10; ++n) out[k][n] = static_cast<std::uint8_t>(list[n]);
-  }
-  return out;
+/// I_i, the mean of V_i and the two points next to it on the edges.
+template <typename Net>
+Vec3 inner_point(const Net& net, std::size_t i) {
+  return (net[i] + net[3 + 2 * i] + net[4 + 2 * i]) * (1.0 / 3);
 }
+
 constexpr std::uint32_t kAway = 0xffffffffU;
-constexpr auto kMicro = make_micro();
 
 }  // namespace
 
@@ -83,8 +77,7 @@ void SmoothNet::move(const Patch& patch, const Context& context) {
             const Vec2 d = (at[j] - at[i]) / 3;
             net[t_index(i, j)] = net[i] + d.x * g[i][0] + d.y * g[i][1];
           }
-      for (std::size_t i = 0; i < 3; ++i)
-        net[9 + i] = (net[i] + net[t_index(i, (i + 1) % 3)] + net[t_index(i, (i + 2) % 3)]) / 3;
+      const auto inner = [&](std::size_t i) { return inner_point(net, i); };
       const Vec2 centre = (at[0] + at[1] + at[2]) / 3;
       for (std::size_t k = 0; k < 3; ++k) {
         std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
@@ -98,13 +91,10 @@ void SmoothNet::move(const Patch& patch, const Context& context) {
         const Vec3 by_t = 0.75 * (tji + net[j] - net[i] - tij);
         const Vec2 to = centre - middle;
         const Vec3 inwards = (dot(to, along) / norm2(along)) * by_t + dot(to, normal) * across;
-        net[12 + k] = 2 * (inwards / 3 - 0.25 * (net[9 + i] - 0.5 * net[i] - 0.5 * tij) -
-                           0.25 * (net[9 + j] - 0.5 * net[j] - 0.5 * tji)) +
-                      0.5 * (tij + tji);
+        net[9 + k] = 2 * (inwards / 3 - 0.25 * (inner(i) - 0.5 * net[i] - 0.5 * tij) -
+                          0.25 * (inner(j) - 0.5 * net[j] - 0.5 * tji)) +
+                     0.5 * (tij + tji);
       }
-      for (std::size_t i = 0; i < 3; ++i)
-        net[15 + i] = (net[9 + i] + net[12 + (i + 1) % 3] + net[12 + (i + 2) % 3]) / 3;
-      net[18] = (net[15] + net[16] + net[17]) / 3;
     }
   });
 }
@@ -157,11 +147,15 @@ SurfaceJet2 SmoothNet::evaluate(const DomainLocator& locator, const DomainPlace&
   const std::size_t k = l[0] <= l[1] ? (l[0] <= l[2] ? 0 : 2) : (l[1] <= l[2] ? 1 : 2);
   const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
   const double r = l[i] - l[k], s = l[j] - l[k], t = 3 * l[k];
-  const auto& m = kMicro[k];
   const auto step = [&](Vec3 a, Vec3 b, Vec3 c) { return r * a + s * b + t * c; };
-  const Vec3 q200 = step(net[m[0]], net[m[1]], net[m[2]]), q110 = step(net[m[1]], net[m[3]], net[m[4]]),
-             q101 = step(net[m[2]], net[m[4]], net[m[5]]), q020 = step(net[m[3]], net[m[6]], net[m[7]]),
-             q011 = step(net[m[4]], net[m[7]], net[m[8]]), q002 = step(net[m[5]], net[m[8]], net[m[9]]);
+  // The micro-triangle (V_i, V_j, centre): its ten points, of which the inner ones are means of the stored ones.
+  const Vec3 ii = inner_point(net, i), ij = inner_point(net, j), ik = inner_point(net, k);
+  const Vec3 ci = net[9 + i], cj = net[9 + j], ck = net[9 + k];
+  const Vec3 ji = (ii + cj + ck) * (1.0 / 3), jj = (ij + ci + ck) * (1.0 / 3), jk = (ik + ci + cj) * (1.0 / 3);
+  const Vec3 centre = (ji + jj + jk) * (1.0 / 3);
+  const Vec3 tij = net[t_index(i, j)], tji = net[t_index(j, i)];
+  const Vec3 q200 = step(net[i], tij, ii), q110 = step(tij, tji, ck), q101 = step(ii, ck, ji),
+             q020 = step(tji, net[j], ij), q011 = step(ck, ij, jj), q002 = step(ji, jj, centre);
   const Vec3 p100 = step(q200, q110, q101), p010 = step(q110, q020, q011), p001 = step(q101, q011, q002);
   SurfaceJet2 jet;
   jet.point = step(p100, p010, p001);

@@ -1,4 +1,4 @@
-// The exact-boundary Clough-Tocher surface of a patch (docs/triangular-patches.md, "Smooth"): 19 control points a
+// The exact-boundary Clough-Tocher surface of a patch (docs/triangular-patches.md, "Smooth"): three cubics a
 // triangle, and on the sides a correction that brings the edge's cubic onto the curve. Internal to the room patch.
 #pragma once
 
@@ -31,8 +31,9 @@ class SmoothNet {
     int side = 0, corner = 0;  ///< the corner opposite
     double s1 = 0, s2 = 0;     ///< s at the corners after `corner`
   };
-  /// Control points: V1 V2 V3, T12 T13 T21 T23 T31 T32, I1 I2 I3, C1 C2 C3, J1 J2 J3, S.
-  using Net = std::array<Vec3, 19>;
+  /// Of the 19 control points those that the others are means of: V1 V2 V3, T12 T13 T21 T23 T31 T32, C1 C2 C3. Fetching
+  /// them from memory is what an evaluation waits for, so the seven means are made anew each time.
+  using Net = std::array<Vec3, 12>;
 
   template <int Order>
   void correct(SurfaceJet2& jet, const Net& net, const Edge& edge, const DomainLocator::Frame& frame,

@@ -30,7 +30,7 @@ struct PatchCurvature {
 
 class PatchSurface {
  public:
-  /// Cost of `smooth`: about 10 us a node, 500 bytes a triangle and 2 kB a node; of the others a tenth.
+  /// Cost of `smooth`: about 10 us a node, 300 bytes a triangle and 2 kB a node; of the others a tenth.
   explicit PatchSurface(const Patch& patch, const Context& context = {});
   ~PatchSurface();
   PatchSurface(PatchSurface&&) noexcept;
