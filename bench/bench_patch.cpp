@@ -87,6 +87,7 @@ double evaluation(std::size_t n) {
   const PatchSurface surface(natural_patch(octant, regular_domain(n), Recovery::smooth), kOne);
   std::mt19937_64 random(1);
   std::vector<Vec2> places;
+  places.reserve(1000000);
   for (int k = 0; k < 1000000; ++k) places.push_back(random_place(random));
   return 1e9 / static_cast<double>(places.size()) * best_of(5, [&] {
            Vec3 sum;

@@ -11,6 +11,7 @@ PatchStyle parse_patch_style(const std::string& option, const std::string& word)
 
 std::vector<PatchSurface> surfaces_of(const std::vector<Patch>& patches, const Context& context) {
   std::vector<PatchSurface> surfaces;
+  surfaces.reserve(patches.size());
   for (const Patch& patch : patches) surfaces.emplace_back(patch, context);
   return surfaces;
 }

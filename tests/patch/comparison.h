@@ -65,6 +65,7 @@ inline Measured measure(const Surface& truth, Domain domain, Recovery recovery) 
   m.making = seconds(start, now());
   std::mt19937_64 random(3);
   std::vector<Vec2> places;
+  places.reserve(6000);
   for (int k = 0; k < 6000; ++k) places.push_back(random_place(random));
   std::vector<SurfaceJet> jets(places.size());
   m.asking = 1e300;

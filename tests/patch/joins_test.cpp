@@ -22,6 +22,7 @@ std::vector<Patch> example(const std::string& name, std::array<std::size_t, 3> d
 
 std::vector<PatchSurface> surfaces_of(const std::vector<Patch>& patches) {
   std::vector<PatchSurface> surfaces;
+  surfaces.reserve(patches.size());
   for (const Patch& patch : patches) surfaces.emplace_back(patch);
   return surfaces;
 }
