@@ -177,6 +177,7 @@ void add_samples(Energy& energy, const TetMesh& mesh, std::span<const Sample> sa
     while (end < samples.size() && samples[end].tet == t) ++end;
     const TetCorners& tet = mesh.tets[t];
     const TetFrame frame = mesh.frame(t);
+    const double size = mesh.size(t), value_scale = value_weight / (size * size), slope_scale = slope_weight / size;
     rows.setZero(40, static_cast<Eigen::Index>(4 * (end - begin)));
     right.setZero(rows.cols());
     Eigen::Index column = 0;
@@ -187,15 +188,15 @@ void add_samples(Energy& energy, const TetMesh& mesh, std::span<const Sample> sa
         const Vec3 d = samples[s].place - to_vec(mesh.lattice[tet[k]]), g = frame.gradients[k];
         const Row10 value = monomials(d);
         const auto at = static_cast<Eigen::Index>(10 * k);
-        rows.block<10, 1>(at, column) = value_weight * b[k] * value.transpose();
+        rows.block<10, 1>(at, column) = value_scale * b[k] * value.transpose();
         if (!has_normal) continue;
         for (std::size_t axis = 0; axis < 3; ++axis)
           rows.block<10, 1>(at, column + 1 + static_cast<Eigen::Index>(axis)) =
-              slope_weight * (b[k] * slopes(d, kAxes[axis]) + dot(g, kAxes[axis]) * value).transpose();
+              slope_scale * (b[k] * slopes(d, kAxes[axis]) + dot(g, kAxes[axis]) * value).transpose();
       }
-      right[column + 1] = slope_weight * samples[s].normal.x;
-      right[column + 2] = slope_weight * samples[s].normal.y;
-      right[column + 3] = slope_weight * samples[s].normal.z;
+      right[column + 1] = slope_scale * samples[s].normal.x;
+      right[column + 2] = slope_scale * samples[s].normal.y;
+      right[column + 3] = slope_scale * samples[s].normal.z;
     }
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(40, 40);
     square.selfadjointView<Eigen::Lower>().rankUpdate(rows);
@@ -208,18 +209,63 @@ void add_samples(Energy& energy, const TetMesh& mesh, std::span<const Sample> sa
   }
 }
 
+/// What an unknown of a vertex of size h is multiplied by to be the quadric's coefficient.
+double unit_at(double h, std::size_t n) {
+  return n == 0 ? h : n < 4 ? 1 : 1 / h;
+}
+
+void scale_unknowns(Energy& energy, const TetMesh& mesh) {
+  std::vector<double> logs(mesh.lattice.size(), 0);
+  std::vector<int> count(mesh.lattice.size(), 0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const double log = std::log(mesh.size(t));
+    for (const std::uint32_t v : mesh.tets[t]) {
+      logs[v] += log;
+      ++count[v];
+    }
+  }
+  energy.sizes.resize(mesh.lattice.size());
+  for (std::size_t v = 0; v < logs.size(); ++v) energy.sizes[v] = std::exp(logs[v] / count[v]);
+  for (std::size_t v = 0; v < logs.size(); ++v) {
+    const auto columns = energy.matrix.columns(v);
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+      double* block = energy.matrix.block(v, n);
+      for (std::size_t i = 0; i < kBlock; ++i)
+        for (std::size_t j = 0; j < kBlock; ++j)
+          block[10 * i + j] *= unit_at(energy.sizes[v], i) * unit_at(energy.sizes[columns[n]], j);
+    }
+    for (std::size_t i = 0; i < kBlock; ++i) energy.right[kBlock * v + i] *= unit_at(energy.sizes[v], i);
+  }
+}
+
 }  // namespace
+
+double unit_of(const Energy& energy, std::size_t vertex, std::size_t n) {
+  return energy.sizes.empty() ? 1 : unit_at(energy.sizes[vertex], n);
+}
+
+void solve_energy(Energy energy, std::vector<Quadric>& quadrics, std::size_t* factor_numbers, const Context& context) {
+  const BlockCholesky factors(energy.matrix, context);
+  if (factor_numbers != nullptr) *factor_numbers = factors.numbers();
+  std::vector<double> x = std::move(energy.right);
+  solve_past_ridge(factors, energy.ridge, x);
+  quadrics.resize(x.size() / kBlock);
+  for (std::size_t v = 0; v < quadrics.size(); ++v)
+    for (std::size_t i = 0; i < kBlock; ++i)
+      quadrics[v][i] = x[kBlock * v + i] * unit_of(energy, v, i);
+}
 
 Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, std::span<const Sample> samples,
                        const EnergyWeights& weights, const Context& context) {
-  Energy energy{empty_matrix(mesh, faces), std::vector<double>(kBlock * mesh.lattice.size(), 0.0), 0};
+  Energy energy{empty_matrix(mesh, faces), std::vector<double>(kBlock * mesh.lattice.size(), 0.0), 0, {}};
   add_samples(energy, mesh, samples, weights);
   context.check();
   context.report("assemble", 0.5);
   std::map<std::array<std::int32_t, 9>, Eigen::MatrixXd> bending;
-  for (const TetCorners& tet : mesh.tets) {
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const TetCorners& tet = mesh.tets[t];
     const auto [at, fresh] = bending.try_emplace(shape_of(mesh, tet));
-    if (fresh) at->second = bending_matrix(points_of(mesh, tet));
+    if (fresh) at->second = bending_matrix(points_of(mesh, tet)) / mesh.size(t);
     scatter(energy.matrix, tet, at->second, weights.bending);
   }
   context.check();
@@ -228,9 +274,14 @@ Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, std::span<co
     if (faces.opposite(f) <= static_cast<std::int64_t>(f)) continue;
     const auto vertices = around_face(faces, f);
     const auto [at, fresh] = jumps.try_emplace(shape_of(mesh, vertices));
-    if (fresh) at->second = jump_matrix(points_of(mesh, vertices), weights.jump);
+    if (fresh) {
+      const double size2 = mesh.size(f / 4) * mesh.size(static_cast<std::size_t>(faces.opposite(f)) / 4);
+      at->second = jump_matrix(points_of(mesh, vertices),
+                               {weights.jump[0] / size2, weights.jump[1], weights.jump[2] * size2});
+    }
     scatter(energy.matrix, vertices, at->second, 1);
   }
+  if (mesh.forest) scale_unknowns(energy, mesh);
   energy.ridge = weights.ridge * energy.matrix.mean_diagonal();
   energy.matrix.add_ridge(energy.ridge);
   context.report("assemble", 1);

@@ -43,34 +43,57 @@ bool is_near(const LatticePoint& cell, const std::vector<LatticePoint>& data, in
   return false;
 }
 
-/// The quadrics of the vertices that `is_new` names, from the tetrahedra around them.
+/// Some of a mesh's tetrahedra as a mesh; points are not located in it. `whole`: of each vertex, its number there.
+TetMesh select(const TetMesh& mesh, const std::vector<std::uint32_t>& tets, std::vector<std::uint32_t>& whole) {
+  TetMesh part;
+  part.origin = mesh.origin;
+  part.step = mesh.step;
+  part.split = mesh.split;
+  part.forest = mesh.forest;
+  std::unordered_map<std::uint32_t, std::uint32_t> number;
+  for (const std::uint32_t t : tets) {
+    TetCorners tet = mesh.tets[t];
+    for (std::uint32_t& v : tet) {
+      const auto [at, fresh] = number.try_emplace(v, static_cast<std::uint32_t>(whole.size()));
+      if (fresh) {
+        whole.push_back(v);
+        part.lattice.push_back(mesh.lattice[v]);
+      }
+      v = at->second;
+    }
+    part.tets.push_back(tet);
+  }
+  return part;
+}
+
+}  // namespace
+
 void solve_new(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new,
                const EnergyWeights& weights, const Context& context) {
   const TetMesh& mesh = surface.mesh;
-  std::vector<TetPlace> around;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+  std::vector<std::uint32_t> around, whole;
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
     if (std::none_of(mesh.tets[t].begin(), mesh.tets[t].end(), [&](std::uint32_t v) { return is_new[v] != 0; }))
       continue;
-    around.push_back(mesh.places[t]);
+    around.push_back(t);
     for (std::size_t i = 0; i < 4; ++i)
-      if (const std::int64_t o = faces.neighbour(t, i); o >= 0)
-        around.push_back(mesh.places[static_cast<std::size_t>(o)]);
+      if (const std::int64_t o = faces.neighbour(t, i); o >= 0) around.push_back(static_cast<std::uint32_t>(o));
   }
-  const TetMesh part = make_tet_mesh(mesh.origin, mesh.step, mesh.split, std::move(around));
-  std::unordered_map<std::uint64_t, std::uint32_t> whole;
-  for (std::uint32_t v = 0; v < mesh.lattice.size(); ++v) whole.emplace(cell_key(mesh.lattice[v]), v);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  const TetMesh part = select(mesh, around, whole);
   const Energy energy = assemble_energy(part, HalfFaces(part.tets, part.lattice.size()), {}, weights, context);
 
   constexpr std::uint32_t fixed = ~0U;
   std::vector<std::uint32_t> unknown(part.lattice.size(), fixed), vertex;
   std::vector<double> known(kBlock * part.lattice.size(), 0.0), pull(known.size());
   for (std::uint32_t v = 0; v < part.lattice.size(); ++v) {
-    const std::uint32_t w = whole.at(cell_key(part.lattice[v]));
+    const std::uint32_t w = whole[v];
     if (is_new[w] != 0) {
       unknown[v] = static_cast<std::uint32_t>(vertex.size());
-      vertex.push_back(w);
+      vertex.push_back(v);
     } else {
-      std::copy_n(surface.quadrics[w].begin(), kBlock, known.begin() + static_cast<std::ptrdiff_t>(kBlock * v));
+      for (std::size_t i = 0; i < kBlock; ++i) known[kBlock * v + i] = surface.quadrics[w][i] / unit_of(energy, v, i);
     }
   }
   if (vertex.empty()) return;
@@ -93,21 +116,34 @@ void solve_new(TetraQuad& surface, const HalfFaces& faces, const std::vector<cha
   }
   solve_past_ridge(BlockCholesky(small, context), energy.ridge, right);
   for (std::size_t k = 0; k < vertex.size(); ++k)
-    std::copy_n(right.begin() + static_cast<std::ptrdiff_t>(kBlock * k), kBlock, surface.quadrics[vertex[k]].begin());
+    for (std::size_t i = 0; i < kBlock; ++i)
+      surface.quadrics[whole[vertex[k]]][i] = right[kBlock * k + i] * unit_of(energy, vertex[k], i);
 }
 
-/// The same surface on other tetrahedra; vertices that it did not have get zeros.
-TetraQuad with_places(const TetraQuad& surface, std::vector<TetPlace> places) {
+TetraQuad moved_to(const TetraQuad& surface, TetMesh mesh, std::vector<char>* is_new) {
   TetraQuad other;
   other.georef = surface.georef;
-  other.mesh = make_tet_mesh(surface.mesh.origin, surface.mesh.step, surface.mesh.split, std::move(places));
+  other.mesh = std::move(mesh);
   std::unordered_map<std::uint64_t, std::uint32_t> old;
   for (std::uint32_t v = 0; v < surface.mesh.lattice.size(); ++v) old.emplace(cell_key(surface.mesh.lattice[v]), v);
   other.quadrics.resize(other.mesh.lattice.size());
-  for (std::size_t v = 0; v < other.quadrics.size(); ++v)
-    if (const auto at = old.find(cell_key(other.mesh.lattice[v])); at != old.end())
+  if (is_new != nullptr) is_new->assign(other.quadrics.size(), 0);
+  for (std::size_t v = 0; v < other.quadrics.size(); ++v) {
+    const auto at = old.find(cell_key(other.mesh.lattice[v]));
+    if (at != old.end())
       other.quadrics[v] = surface.quadrics[at->second];
+    else if (is_new != nullptr)
+      (*is_new)[v] = 1;
+  }
   return other;
+}
+
+namespace {
+
+/// The same surface on other tetrahedra of the grid; vertices that it did not have get zeros.
+TetraQuad with_places(const TetraQuad& surface, std::vector<TetPlace> places) {
+  return moved_to(surface,
+                  make_tet_mesh(surface.mesh.origin, surface.mesh.step, surface.mesh.split, std::move(places)), nullptr);
 }
 
 /// `own`, and those of the others that the surface reaches from there without meeting an open face.
@@ -151,26 +187,30 @@ std::vector<TetPlace> useful_places(const TetraQuad& surface, const HalfFaces& f
 
 }  // namespace
 
-std::size_t drop_stray(TetraQuad& surface, HalfFaces& faces, const std::vector<TetPlace>& with_points) {
-  const TetMesh& mesh = surface.mesh;
-  const TetraQuadField field(surface);
-  std::vector<char> reached(mesh.tets.size(), 0);
+std::vector<char> hanging_together(const TetraQuadField& field, const HalfFaces& faces, std::vector<char> seeds) {
   std::vector<std::uint32_t> stack;
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-    if (std::binary_search(with_points.begin(), with_points.end(), mesh.places[t])) {
-      reached[t] = 1;
-      stack.push_back(t);
-    }
+  for (std::uint32_t t = 0; t < seeds.size(); ++t)
+    if (seeds[t] != 0) stack.push_back(t);
   while (!stack.empty()) {
     const std::uint32_t t = stack.back();
     stack.pop_back();
     for (std::size_t i = 0; i < 4; ++i) {
       const std::int64_t o = faces.neighbour(t, i);
-      if (o < 0 || reached[static_cast<std::size_t>(o)] != 0 || !crosses_face(field.ordinates(t), i)) continue;
-      reached[static_cast<std::size_t>(o)] = 1;
+      if (o < 0 || seeds[static_cast<std::size_t>(o)] != 0 || !crosses_face(field.ordinates(t), i)) continue;
+      seeds[static_cast<std::size_t>(o)] = 1;
       stack.push_back(static_cast<std::uint32_t>(o));
     }
   }
+  return seeds;
+}
+
+std::size_t drop_stray(TetraQuad& surface, HalfFaces& faces, const std::vector<TetPlace>& with_points) {
+  const TetMesh& mesh = surface.mesh;
+  const TetraQuadField field(surface);
+  std::vector<char> seeds(mesh.tets.size(), 0);
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+    seeds[t] = std::binary_search(with_points.begin(), with_points.end(), mesh.places[t]) ? 1 : 0;
+  const std::vector<char> reached = hanging_together(field, faces, std::move(seeds));
   std::vector<TetPlace> places;
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
     if (reached[t] != 0 || !field.may_cross(t)) places.push_back(mesh.places[t]);

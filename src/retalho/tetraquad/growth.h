@@ -10,6 +10,17 @@
 
 namespace retalho {
 
+/// The same surface on another mesh: vertices at the same lattice points keep their quadrics, others get zeros and are
+/// marked.
+TetraQuad moved_to(const TetraQuad& surface, TetMesh mesh, std::vector<char>* is_new);
+
+/// The marked vertices' quadrics minimise the energy's smoothing terms together, the others stay.
+void solve_new(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new,
+               const EnergyWeights& weights, const Context& context);
+
+/// `seeds` (one mark a tetrahedron) and all that the surface reaches from them across faces.
+std::vector<char> hanging_together(const TetraQuadField& field, const HalfFaces& faces, std::vector<char> seeds);
+
 /// Drops tetrahedra whose piece of the surface hangs together with none in a tetrahedron of `with_points` (ascending):
 /// sheets that no point asks for. Returns how many.
 std::size_t drop_stray(TetraQuad& surface, HalfFaces& faces, const std::vector<TetPlace>& with_points);

@@ -115,6 +115,27 @@ TetMesh make_tet_mesh(Vec3 origin, double step, TetSplit split, std::vector<TetP
   return mesh;
 }
 
+TetMesh make_tet_mesh(Vec3 origin, double step, std::shared_ptr<const TetForest> forest,
+                      const std::vector<std::uint32_t>& leaves) {
+  TetMesh mesh;
+  mesh.origin = origin;
+  mesh.step = step;
+  mesh.split = TetSplit::kuhn;
+  std::unordered_map<std::uint32_t, std::uint32_t> number;
+  for (const std::uint32_t leaf : leaves) {
+    TetCorners tet = forest->nodes()[leaf].corners;
+    for (std::uint32_t& v : tet) {
+      const auto [at, fresh] = number.try_emplace(v, static_cast<std::uint32_t>(mesh.lattice.size()));
+      if (fresh) mesh.lattice.push_back(forest->vertices()[v]);
+      v = at->second;
+    }
+    mesh.tet_of_leaf.emplace(leaf, static_cast<std::uint32_t>(mesh.tets.size()));
+    mesh.tets.push_back(tet);
+  }
+  mesh.forest = std::move(forest);
+  return mesh;
+}
+
 TetFrame TetMesh::frame(std::size_t tet) const {
   const TetCorners& c = tets[tet];
   return frame_of({lattice[c[0]], lattice[c[1]], lattice[c[2]], lattice[c[3]]});
@@ -122,6 +143,12 @@ TetFrame TetMesh::frame(std::size_t tet) const {
 
 std::int64_t TetMesh::locate(Vec3 p, TetBarycentric* where) const {
   const Vec3 u = to_lattice(p);
+  if (forest) {
+    const std::int64_t leaf = forest->locate(u, where);
+    if (leaf < 0) return -1;
+    const auto at = tet_of_leaf.find(static_cast<std::uint32_t>(leaf));
+    return at == tet_of_leaf.end() ? -1 : static_cast<std::int64_t>(at->second);
+  }
   constexpr double reach = (1 << 20) - 2;
   if (!(std::abs(u.x) < reach && std::abs(u.y) < reach && std::abs(u.z) < reach)) return -1;
   const LatticePoint cell = {static_cast<std::int32_t>(std::floor(u.x)), static_cast<std::int32_t>(std::floor(u.y)),

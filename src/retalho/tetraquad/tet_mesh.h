@@ -5,15 +5,18 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "retalho/bernstein/tetrahedron.h"
 #include "retalho/core/vec.h"
+#include "retalho/tetraquad/forest.h"
 #include "retalho/tetraquad/half_faces.h"
 
 namespace retalho {
@@ -48,6 +51,9 @@ struct TetMesh {
   std::vector<TetCorners> tets;                                    ///< either orientation
   std::vector<TetPlace> places;                                    ///< of each tetrahedron, ascending
   std::unordered_map<std::uint64_t, std::uint32_t> first_in_cell;  ///< by cell_key: the cell's first tetrahedron
+  /// Adaptive meshes: whose leaves the tetrahedra are, TetForest::kUnit steps to a root cube; `places` is empty then.
+  std::shared_ptr<const TetForest> forest;
+  std::unordered_map<std::uint32_t, std::uint32_t> tet_of_leaf;  ///< by the leaf's node
 
   Vec3 position(std::size_t vertex) const {
     const LatticePoint& l = lattice[vertex];
@@ -57,6 +63,8 @@ struct TetMesh {
   Vec3 to_lattice(Vec3 p) const { return (p - origin) / step; }
   /// A tetrahedron's frame in lattice coordinates.
   TetFrame frame(std::size_t tet) const;
+  /// The length in steps that the fit's terms are measured by: a cube's edge, or the cube root of six volumes.
+  double size(std::size_t tet) const { return forest ? std::cbrt(std::abs(frame(tet).volume6)) : 1; }
 
   /// The tetrahedron that holds `p` and p's barycentric coordinates in it, or -1. On shared faces: the first.
   std::int64_t locate(Vec3 p, TetBarycentric* where = nullptr) const;
@@ -64,6 +72,10 @@ struct TetMesh {
 
 /// Throws BadInput when a cell lies 2^20 or more from the origin. `places` need not be sorted; doubles are dropped.
 TetMesh make_tet_mesh(Vec3 origin, double step, TetSplit split, std::vector<TetPlace> places);
+
+/// The adaptive mesh of these leaves.
+TetMesh make_tet_mesh(Vec3 origin, double step, std::shared_ptr<const TetForest> forest,
+                      const std::vector<std::uint32_t>& leaves);
 
 /// The tetrahedron of the full grid that holds the point, in lattice coordinates.
 TetPlace place_of(TetSplit split, Vec3 lattice_point);

@@ -104,11 +104,11 @@ std::optional<Jet3> TetraQuadField::jet(Vec3 p) const {
 }
 
 std::optional<TetraQuadField::Foot> TetraQuadField::project(Vec3 p, int steps) const {
-  const double step = surface_->mesh.step;
   for (int n = 0; n <= steps; ++n) {
     TetBarycentric b;
     const std::int64_t tet = surface_->mesh.locate(p, &b);
     if (tet < 0) return std::nullopt;
+    const double step = surface_->mesh.step * surface_->mesh.size(static_cast<std::size_t>(tet));
     const Jet3 jet = gradient(static_cast<std::size_t>(tet), b);
     const double slope2 = norm2(jet.gradient);
     if (!(slope2 > 0)) return std::nullopt;
