@@ -1,6 +1,7 @@
 // TetraQuad surfaces: errors both ways, CPU time and memory of fits, and rays against Embree on triangles.
 //   bench_tetraquad                      the whole table
-//   bench_tetraquad --value CASE:WHAT    CASE: torus8, torus16, bunny24, bunny32, bunny48, hand, noise02, noise05
+//   bench_tetraquad --value CASE:WHAT    CASE: torus8, torus16, bunny24, bunny32, bunny48, noise02, noise05, adaptive,
+//                                        bumps (bumps:gain: coefficients of a grid over the adaptive mesh's)
 //                                        WHAT: mean, max, normal, back (surface to truth, largest), coefficients, cpu,
 //                                        memory, open
 //                                        or rays:camera, rays:random, rays:camera_ratio, rays:random_ratio, rays:misses
@@ -23,6 +24,7 @@
 
 #include "retalho/cloud/cloud.h"
 #include "retalho/mesh/tetraquad_mesh.h"
+#include "retalho/tetraquad/adaptive.h"
 #include "retalho/tetraquad/fit.h"
 #include "retalho/tetraquad/rays.h"
 
@@ -105,11 +107,13 @@ class NearestPlane {
 using Values = std::map<std::string, double>;
 
 Values measure(const PointCloud& cloud, const PointCloud& truth, const TetraQuadFitOptions& options,
-               const std::function<double(Vec3)>& distance) {
+               const std::function<double(Vec3)>& distance, std::size_t adaptive = 0) {
   Values values;
   const double start = cpu_now(), size = diagonal(truth);
   TetraQuadFitReport report;
-  const TetraQuad surface = fit_tetraquad(cloud, options, &report, one_thread());
+  const TetraQuad surface =
+      adaptive > 0 ? fit_tetraquad_adaptive(cloud, {.coefficients = adaptive}, options, &report, one_thread())
+                   : fit_tetraquad(cloud, options, &report, one_thread());
   values["cpu"] = cpu_now() - start;
   values["memory"] = peak_megabytes();
   values["coefficients"] = static_cast<double>(report.coefficients);
@@ -154,7 +158,51 @@ PointCloud noisy(PointCloud cloud, double sigma) {
   return cloud;
 }
 
+/// A sphere with six bumps of widths 0.02 to 0.12 radii, as high as half their width: smooth and sharp places mixed.
+/// r(d) = 0.4 + sum w/2 exp(-0.16 |d - c|^2 / w^2) over the six unit vectors c of the axes.
+PointCloud bumps(std::size_t count, unsigned seed) {
+  const std::array<Vec3, 6> centres = {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  PointCloud cloud;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 d = normalized(Vec3{normal(engine), normal(engine), normal(engine)});
+    double r = 0.4;
+    Vec3 slope{};
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double w = 0.02 * static_cast<double>(i + 1), narrow = 0.16 / (w * w);
+      const double height = w / 2 * std::exp(-narrow * norm2(d - centres[i]));
+      r += height;
+      slope = slope - 2 * narrow * height * (d - centres[i]);
+    }
+    cloud.positions.push_back(r * d);
+    cloud.normals.push_back(normalized(d - (slope - dot(slope, d) * d) / r));
+  }
+  return cloud;
+}
+
+/// How many times the coefficients of the adaptive mesh a grid takes for the adaptive mesh's error (its order between
+/// resolutions 24 and 32 continued).
+Values run_bumps() {
+  const PointCloud cloud = bumps(60000, 1), truth = bumps(20000, 2);
+  const NearestPlane distance(cloud);
+  const auto to_truth = [&](Vec3 p) { return distance(p); };
+  const TetraQuadFitOptions light = {.smoothness = 0.1};
+  Values values = measure(cloud, truth, light, to_truth, 22000);
+  Values coarse = measure(cloud, truth, {.resolution = 24, .smoothness = 0.1}, to_truth);
+  Values fine = measure(cloud, truth, {.resolution = 32, .smoothness = 0.1}, to_truth);
+  const double order =
+      std::log(coarse["mean"] / fine["mean"]) / std::log(fine["coefficients"] / coarse["coefficients"]);
+  values["grid24_mean"] = coarse["mean"];
+  values["grid24_coefficients"] = coarse["coefficients"];
+  values["grid32_mean"] = fine["mean"];
+  values["grid32_coefficients"] = fine["coefficients"];
+  values["gain"] = fine["coefficients"] * std::pow(fine["mean"] / values["mean"], 1 / order) / values["coefficients"];
+  return values;
+}
+
 Values run_case(const std::string& name) {
+  if (name == "bumps") return run_bumps();
   if (name == "torus8" || name == "torus16") {
     const auto distance = [](Vec3 p) { return std::abs(std::hypot(std::hypot(p.x, p.y) - kRing, p.z) - kTube); };
     return measure(torus(40000, 1), torus(20000, 2), {.resolution = name == "torus8" ? 8 : 16}, distance);
@@ -162,6 +210,7 @@ Values run_case(const std::string& name) {
   const PointCloud bunny = read_points(data("bunny.ply")), truth = read_points(data("bunny_check.ply"));
   const NearestPlane distance(bunny);
   const auto to_truth = [&](Vec3 p) { return distance(p); };
+  if (name == "adaptive") return measure(bunny, truth, {.smoothness = 0.1}, to_truth, 29900);
   if (name == "noise02") return measure(noisy(bunny, 0.002), truth, {.resolution = 24}, to_truth);
   if (name == "noise05") return measure(noisy(bunny, 0.005), truth, {.resolution = 24}, to_truth);
   return measure(bunny, truth, {.resolution = name == "bunny48" ? 48 : name == "bunny32" ? 32 : 24}, to_truth);
@@ -327,7 +376,8 @@ int main(int argc, char** argv) {
     fmt::print("{{\"value\": {:.6g}}}\n", value);
     return 0;
   }
-  for (const std::string name : {"torus8", "torus16", "bunny24", "bunny32", "bunny48", "noise02", "noise05", "rays"}) {
+  for (const std::string name :
+       {"torus8", "torus16", "bunny24", "bunny32", "bunny48", "noise02", "noise05", "adaptive", "bumps", "rays"}) {
     fmt::print("{}\n", name);
     for (const auto& [what, value] : name == "rays" ? run_rays() : run_case(name))
       fmt::print("  {:<24}{:.6g}\n", what, value);

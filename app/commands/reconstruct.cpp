@@ -10,6 +10,7 @@
 #include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/tetraquad_mesh.h"
+#include "retalho/tetraquad/adaptive.h"
 #include "retalho/tetraquad/document.h"
 #include "retalho/tetraquad/fit.h"
 #include "table.h"
@@ -23,6 +24,7 @@ struct Options {
   std::string points, output, tetrahedra, split = "five";
   std::optional<int> resolution;
   std::optional<double> max_error;
+  std::optional<std::size_t> adaptive;
   double quantile = 0.99, tolerance = 0, smoothness = 1;
   int neighbours = 16;
 };
@@ -70,6 +72,11 @@ void run(const Program& program, const Options& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
   check_output(program, options.output, {".retalho", ".ply", ".obj", ".stl", ".glb"}, {options.points});
+  if (options.adaptive && std::filesystem::path(options.output).extension() == ".retalho")
+    throw UsageError("model files hold grids only: write an --adaptive surface as triangles (.ply, .obj, .stl, .glb)",
+                     {}, "--adaptive");
+  if (options.adaptive && options.resolution)
+    throw UsageError("--adaptive chooses the sizes of tetrahedra itself: leave --resolution out", {}, "--adaptive");
   if (!options.tetrahedra.empty())
     check_output(program, options.tetrahedra, {".vtk"}, {options.points, options.output});
   const Context context = program.context();
@@ -88,8 +95,13 @@ void run(const Program& program, const Options& options) {
   error.quantile = options.quantile;
   if (options.resolution) error.finest = *options.resolution;
   error.coarsest = std::min(error.coarsest, error.finest);
-  const TetraQuad surface = options.max_error ? fit_tetraquad_to(cloud, error, fit, &report, context)
-                                              : fit_tetraquad(cloud, fit, &report, context);
+  TetraQuadAdaptiveOptions budget;
+  budget.coefficients = options.adaptive.value_or(budget.coefficients);
+  budget.max_error = error.max_error;
+  budget.quantile = error.quantile;
+  const TetraQuad surface = options.adaptive    ? fit_tetraquad_adaptive(cloud, budget, fit, &report, context)
+                            : options.max_error ? fit_tetraquad_to(cloud, error, fit, &report, context)
+                                                : fit_tetraquad(cloud, fit, &report, context);
   for (const std::string& warning : report.warnings) program.say("warning: " + warning);
   warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
   const TetraQuadField field(surface);
@@ -169,6 +181,11 @@ void add_reconstruct(CLI::App& root, Program& program) {
       ->type_name("Q");
   command->add_option("--neighbours", options->neighbours, "For normals, where the points have none (default 16)")
       ->type_name("K");
+  command
+      ->add_option(
+          "--adaptive", options->adaptive,
+          "Smaller tetrahedra where the points ask for them, at most N coefficients; best with --smoothness 0.1")
+      ->type_name("N");
   command->add_option("--smoothness", options->smoothness, "0.1 for clean points, 10 for noisy ones (default 1)")
       ->type_name("S");
   command

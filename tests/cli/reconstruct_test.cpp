@@ -53,6 +53,16 @@ TEST(Reconstruct, PointsWithoutNormalsGetThemWithAWarning) {
   EXPECT_EQ(folder.entries(), 4U);
 }
 
+TEST(Reconstruct, AdaptiveSurfacesAreTriangles) {
+  const ScratchFolder folder;
+  folder.put("torus.xyz", xyz_of(torus_points(5000, 7)));
+  const Outcome outcome = run(folder, "reconstruct torus.xyz -o torus.ply --adaptive 9000 --smoothness 0.1 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["genus"], 1);
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o torus.retalho --adaptive 9000").code, 2);
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o other.ply --adaptive 9000 --resolution 9").code, 2);
+}
+
 TEST(Reconstruct, SaysWhatIsWrong) {
   const ScratchFolder folder;
   folder.put("torus.xyz", xyz_of(torus_points(500, 7)));

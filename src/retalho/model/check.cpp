@@ -122,6 +122,7 @@ std::string find_fault(const TetraQuad& surface) {
   if (!finite(mesh.origin.x) || !finite(mesh.origin.y) || !finite(mesh.origin.z)) return "the origin is not finite";
   if (!(mesh.step > 0) || !finite(mesh.step)) return "the step of the grid is not a positive number";
   if (mesh.tets.empty()) return "no tetrahedra";
+  if (mesh.forest) return "adaptive meshes have no place in the format yet";
   if (surface.quadrics.size() != mesh.lattice.size())
     return fmt::format("{} quadrics for {} vertices", surface.quadrics.size(), mesh.lattice.size());
   for (std::size_t v = 0; v < surface.quadrics.size(); ++v)

@@ -251,8 +251,7 @@ void solve_energy(Energy energy, std::vector<Quadric>& quadrics, std::size_t* fa
   solve_past_ridge(factors, energy.ridge, x);
   quadrics.resize(x.size() / kBlock);
   for (std::size_t v = 0; v < quadrics.size(); ++v)
-    for (std::size_t i = 0; i < kBlock; ++i)
-      quadrics[v][i] = x[kBlock * v + i] * unit_of(energy, v, i);
+    for (std::size_t i = 0; i < kBlock; ++i) quadrics[v][i] = x[kBlock * v + i] * unit_of(energy, v, i);
 }
 
 Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, std::span<const Sample> samples,
@@ -276,8 +275,8 @@ Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, std::span<co
     const auto [at, fresh] = jumps.try_emplace(shape_of(mesh, vertices));
     if (fresh) {
       const double size2 = mesh.size(f / 4) * mesh.size(static_cast<std::size_t>(faces.opposite(f)) / 4);
-      at->second = jump_matrix(points_of(mesh, vertices),
-                               {weights.jump[0] / size2, weights.jump[1], weights.jump[2] * size2});
+      at->second =
+          jump_matrix(points_of(mesh, vertices), {weights.jump[0] / size2, weights.jump[1], weights.jump[2] * size2});
     }
     scatter(energy.matrix, vertices, at->second, 1);
   }

@@ -38,7 +38,7 @@ struct EnergyWeights {
 struct Energy {
   BlockMatrix matrix;
   std::vector<double> right;
-  double ridge = 0;  ///< as added to the diagonal
+  double ridge = 0;           ///< as added to the diagonal
   std::vector<double> sizes;  ///< adaptive: of each vertex; the unknowns are value / h, gradient, Hessian * h
 };
 

@@ -14,7 +14,9 @@ constexpr std::array<std::array<std::size_t, 3>, 6> kPaths = {
     {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 std::uint64_t key(const TetForest::LatticePlace& p) {
-  const auto part = [](std::int32_t c) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c + (1 << 20))); };
+  const auto part = [](std::int32_t c) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c + (1 << 20)));
+  };
   return part(p[0]) | part(p[1]) << 21 | part(p[2]) << 42;
 }
 

@@ -1,7 +1,8 @@
 // Adaptive meshes: Kuhn's tetrahedra of a few cubes, bisected where more is needed, always conforming.
 //
-// Maubach's bisection: the corners' order and the level say which edge is cut, so that only three shapes up to similarity
-// arise, whatever the level. Lattice coordinates are whole, kUnit to a cube: no floating point in the topology.
+// Maubach's bisection: the corners' order and the level say which edge is cut, so that only three shapes up to
+// similarity arise, whatever the level. Lattice coordinates are whole, kUnit to a cube: no floating point in the
+// topology.
 #pragma once
 
 #include <array>
@@ -43,8 +44,8 @@ class TetForest {
   /// middle of one of its edges, until nothing has: the leaves conform again.
   void bisect(std::span<const std::uint32_t> leaves);
 
-  /// The leaf that holds the point (lattice coordinates) and its barycentric coordinates; -1 outside of all cubes. Exact
-  /// up to the rounding of the fractions. Cost: the level.
+  /// The leaf that holds the point (lattice coordinates) and its barycentric coordinates; -1 outside of all cubes.
+  /// Exact up to the rounding of the fractions. Cost: the level.
   std::int64_t locate(Vec3 p, TetBarycentric* where = nullptr) const;
 
  private:

@@ -142,8 +142,8 @@ namespace {
 
 /// The same surface on other tetrahedra of the grid; vertices that it did not have get zeros.
 TetraQuad with_places(const TetraQuad& surface, std::vector<TetPlace> places) {
-  return moved_to(surface,
-                  make_tet_mesh(surface.mesh.origin, surface.mesh.step, surface.mesh.split, std::move(places)), nullptr);
+  return moved_to(surface, make_tet_mesh(surface.mesh.origin, surface.mesh.step, surface.mesh.split, std::move(places)),
+                  nullptr);
 }
 
 /// `own`, and those of the others that the surface reaches from there without meeting an open face.
