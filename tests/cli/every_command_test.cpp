@@ -7,7 +7,7 @@ namespace retalho::test {
 namespace {
 
 const std::vector<std::string>& commands() {
-  static const std::vector<std::string> names{"info", "fit", "compare", "sample", "mesh", "render", "curve"};
+  static const std::vector<std::string> names{"info", "fit", "compare", "sample", "mesh", "render", "curve", "patch"};
   return names;
 }
 

@@ -101,6 +101,9 @@ TEST(PatchCommand, TheModelFileServesTheOtherCommands) {
   EXPECT_EQ(mesh.json().at("watertight"), true);
   EXPECT_LE(mesh.json().at("tolerance").get<double>(), 0.002);
   EXPECT_GT(mesh.json().at("triangles").get<int>(), 256);
+  const std::string blade = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/blade.json";
+  ASSERT_EQ(run(folder, "patch " + blade + " -o b.retalho").code, 0);  // its open ends lie over each other in plan
+  EXPECT_EQ(run(folder, "mesh b.retalho -o b.ply --json").json().at("watertight"), true);
   ASSERT_EQ(run(folder, "render h.retalho -o h.png --style isophotes --size 200x200").code, 0);
   const auto before = run(folder, "patch " + hull + " --divisions 8 --json --at 0.2,0.3").json(),
              after = run(folder, "patch h.retalho --json --at 0.2,0.3").json();
