@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "retalho/patch/joins.h"
@@ -17,11 +18,41 @@ Key key_of(Vec3 p) {
           std::bit_cast<std::uint64_t>(p.z + 0.0)};  // + 0.0: one zero
 }
 
+/// Two patches that share both sides at a corner have the same triangle there, and welded it would be one with two
+/// faces. The second one's is joined with its neighbour and cut the other way. `corners` are those of the patches so
+/// far.
+void part_corners(TriangleMesh& mesh, std::size_t begin, const Patch& patch,
+                  std::set<std::array<std::uint32_t, 3>>& corners) {
+  const auto& own = patch.domain.triangles;
+  for (std::size_t t = 0; t < own.size(); ++t)
+    for (const auto& side : patch.domain.sides) {
+      const auto at = std::find(own[t].begin(), own[t].end(), side[0]);
+      if (at == own[t].end()) continue;
+      auto key = mesh.triangles[begin + t];
+      const auto k = static_cast<std::size_t>(at - own[t].begin());
+      const std::uint32_t p = key[k], a = key[(k + 1) % 3], b = key[(k + 2) % 3];
+      std::sort(key.begin(), key.end());
+      if (corners.insert(key).second) continue;
+      for (std::size_t other = begin; other < mesh.triangles.size(); ++other) {
+        auto& n = mesh.triangles[other];
+        for (std::size_t j = 0; j < 3; ++j) {
+          if (n[j] != b || n[(j + 1) % 3] != a) continue;
+          const std::uint32_t c = n[(j + 2) % 3];
+          n = {p, c, b};
+          mesh.triangles[begin + t] = {p, a, c};
+          other = mesh.triangles.size() - 1;  // found: leave both loops
+          break;
+        }
+      }
+    }
+}
+
 }  // namespace
 
 TriangleMesh mesh_patches(std::span<const Patch> patches, bool weld) {
   TriangleMesh mesh;
   std::map<Key, std::uint32_t> shared;
+  std::set<std::array<std::uint32_t, 3>> corners;
   for (const Patch& patch : patches) {
     std::vector<std::uint32_t> name(patch.positions.size(), 0xffffffffU);
     const auto add = [&](std::uint32_t i) {
@@ -39,7 +70,9 @@ TriangleMesh mesh_patches(std::span<const Patch> patches, bool weld) {
         }
     for (std::uint32_t i = 0; i < name.size(); ++i)
       if (name[i] == 0xffffffffU) name[i] = add(i);
+    const std::size_t begin = mesh.triangles.size();
     for (const auto& t : patch.domain.triangles) mesh.triangles.push_back({name[t[0]], name[t[1]], name[t[2]]});
+    if (weld && patches.size() > 1) part_corners(mesh, begin, patch, corners);
   }
   mesh.normals.assign(mesh.positions.size(), Vec3{});
   for (const auto& t : mesh.triangles) {
