@@ -9,6 +9,7 @@
 #include "retalho/model/model.h"
 #include "retalho/tin/refine.h"
 #include "table.h"
+#include "visibility_errors.h"
 
 namespace retalho::app {
 namespace {
@@ -18,6 +19,7 @@ struct Options {
   std::vector<std::string> models;
   GridFlags grid;
   BudgetFlags budget;
+  VisibilityFlags visibility;
   bool markdown = false, csv = false;
 };
 
@@ -40,7 +42,7 @@ const std::vector<SurfaceFlags>& kinds() {
 }
 
 std::vector<ModelReport> compare_kinds(const Program& program, const Options& options, const Raster& raster,
-                                       const RasterSummary& summary, const Context& context) {
+                                       const RasterSummary& summary, VisibilityErrors* sight, const Context& context) {
   const double range = summary.valid > 0 ? summary.maximum - summary.minimum : 0;
   const Budget budget = resolve(program, options.budget, summary.valid, range);
   const Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
@@ -53,12 +55,14 @@ std::vector<ModelReport> compare_kinds(const Program& program, const Options& op
     report.name = kind_text(report) + (fit == FitKind::interpolate ? "" : " " + kind.fit);
     report.bytes = encode_model(terrain).size();
     report.errors = assess(terrain, raster, budget.max_error, context);
+    if (sight != nullptr) sight->add(terrain, report.name, context);
     reports.push_back(report);
   }
   return reports;
 }
 
-std::vector<ModelReport> compare_models(const Options& options, const Raster& raster, const Context& context) {
+std::vector<ModelReport> compare_models(const Options& options, const Raster& raster, VisibilityErrors* sight,
+                                        const Context& context) {
   std::vector<ModelReport> reports;
   for (const std::string& path : options.models) {
     const Terrain terrain = load_terrain(path);
@@ -67,17 +71,21 @@ std::vector<ModelReport> compare_models(const Options& options, const Raster& ra
     report.name = path;
     report.bytes = std::filesystem::file_size(path);
     report.errors = assess(terrain, raster, terrain.tolerance, context);
+    if (sight != nullptr) sight->add(terrain, report.name, context);
     reports.push_back(report);
   }
   return reports;
 }
 
-Table table_of(const std::vector<ModelReport>& reports, bool with_kind) {
+Table table_of(const std::vector<ModelReport>& reports, bool with_kind, const VisibilityErrors* sight) {
   std::vector<std::string> header{"model"};
   if (with_kind) header.push_back("surface");
   for (const char* name :
        {"vertices", "coefficients", "numbers", "bytes", "RMSE", "maximum", "at", "slope RMSE", "uncovered"})
     header.push_back(name);
+  if (sight != nullptr)
+    for (const char* name : {"seen RMSE", "seen maximum"}) header.push_back(name);
+  std::size_t next = 0;
   Table table(header);
   for (const ModelReport& r : reports) {
     std::vector<std::string> row{r.name};
@@ -89,6 +97,10 @@ Table table_of(const std::vector<ModelReport>& reports, bool with_kind) {
     row.push_back(fmt::format("{:.8g} {:.8g}", r.errors.max_error_at.x, r.errors.max_error_at.y));
     row.push_back(number_text(r.errors.slope_rmse));
     row.push_back(fmt::format("{}", r.errors.uncovered));
+    if (sight != nullptr) {
+      row.push_back(number_text(sight->differences()[next].rmse));
+      row.push_back(number_text(sight->differences()[next++].maximum));
+    }
     table.add(row);
   }
   return table;
@@ -102,22 +114,35 @@ void run(const Program& program, const Options& options) {
     throw UsageError("models and a budget (--vertices, --max-error, --ratio) exclude each other: give one of them");
   if (static_cast<int>(options.markdown) + static_cast<int>(options.csv) + static_cast<int>(program.json) > 1)
     throw UsageError("--json, --markdown and --csv exclude each other");
+  if (!options.visibility.maps.empty() && !options.visibility.radius)
+    throw UsageError("--visibility-maps needs --visibility RADIUS (0: no limit)", {}, "--visibility-maps");
   const Context context = program.context();
   RasterSummary summary;
   const Raster raster = load_grid(program, options.dem, options.grid, summary, context);
   const bool fitted = options.models.empty();
-  const std::vector<ModelReport> reports =
-      fitted ? compare_kinds(program, options, raster, summary, context) : compare_models(options, raster, context);
+  std::optional<VisibilityErrors> sight;
+  if (options.visibility.radius) sight.emplace(program, options.visibility, raster, context);
+  VisibilityErrors* seen = sight ? &*sight : nullptr;
+  const std::vector<ModelReport> reports = fitted ? compare_kinds(program, options, raster, summary, seen, context)
+                                                  : compare_models(options, raster, seen, context);
+  if (seen != nullptr) seen->write_pictures();
   if (program.json) {
     nlohmann::ordered_json models = nlohmann::ordered_json::array();
     for (const ModelReport& report : reports) {
       nlohmann::ordered_json entry = {{"name", report.name}};
       entry.update(to_json(report));
+      if (seen != nullptr) {
+        const MapDifference& d = seen->differences()[models.size()];
+        entry["visibility_rmse"] = d.rmse;
+        entry["visibility_max"] = d.maximum;
+        entry["visibility_mean"] = d.mean;
+        entry["visibility_cells"] = d.cells;
+      }
       models.push_back(entry);
     }
     return program.print(nlohmann::ordered_json{{"models", models}});
   }
-  const Table table = table_of(reports, !fitted);
+  const Table table = table_of(reports, !fitted, seen);
   program.print(options.markdown ? table.markdown() : options.csv ? table.csv() : table.text());
 }
 
@@ -129,12 +154,14 @@ void add_compare(CLI::App& root, Program& program) {
       add_command(root, program, "compare", "Models against the grid that they stand for: a table of errors",
                   "retalho compare dem.tif dem.retalho flat.retalho\n"
                   "retalho compare dem.tif --vertices 1000\n"
-                  "retalho compare dem.tif --ratio 1% --markdown");
+                  "retalho compare dem.tif --ratio 1% --markdown\n"
+                  "retalho compare dem.tif --vertices 1000 --visibility 2000 --visibility-maps pictures");
   command->add_option("DEM", options->dem, "Elevation grid")->required()->type_name("");
   command->add_option("MODEL", options->models, "Models; none: every kind of surface is fitted and compared")
       ->type_name("");
   add_budget_flags(*command, options->budget);
   add_grid_flags(*command, options->grid);
+  add_visibility_flags(*command, options->visibility);
   command->add_flag("--markdown", options->markdown, "The table as Markdown");
   command->add_flag("--csv", options->csv, "The table as CSV");
   command->callback([options, &program] { run(program, *options); });

@@ -64,6 +64,26 @@ TEST(Viewshed, IntervisibilityMapAndModels) {
   EXPECT_EQ(run(folder, "viewshed m.retalho -o w.tif --observer 1105,2155,2 --json").json()["visible_cells"], 21 * 30);
 }
 
+TEST(Viewshed, CompareTellsHowFarTheMapsAreAndDrawsThem) {
+  const Wall folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 0 --surface linear").code, 0);
+  const auto same = run(folder, "compare dem.asc m.retalho --visibility 100 --json").json()["models"][0];
+  EXPECT_EQ(same["visibility_cells"], 1200);
+  EXPECT_NEAR(same["visibility_rmse"].get<double>(), 0, 1e-3);  // the model is the grid
+  const Outcome kinds =
+      run(folder, "compare dem.asc --vertices 6 --visibility 0 --visibility-maps pictures --directions 36 --json");
+  ASSERT_EQ(kinds.code, 0) << kinds.err;
+  for (const auto& model : kinds.json()["models"]) {
+    EXPECT_LE(model["visibility_rmse"].get<double>(), model["visibility_max"].get<double>());
+    EXPECT_GT(model["visibility_max"].get<double>(), 1);  // six vertices do not make a wall
+    EXPECT_LE(model["visibility_max"].get<double>(), 1250);
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "pictures/linear.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "pictures/powell-sabin-normals.png"));
+  EXPECT_EQ(run(folder, "compare dem.asc --vertices 6 --visibility-maps p").code, 2);
+  EXPECT_EQ(run(folder, "compare dem.asc --vertices 6 --visibility -3").code, 2);
+}
+
 TEST(Viewshed, RefusesWhatMakesNoSense) {
   const Wall folder;
   EXPECT_EQ(run(folder, "viewshed dem.asc -o v.tif").code, 2);

@@ -205,4 +205,24 @@ std::vector<float> exact_intervisibility(const Raster& raster, int stride, const
   return map;
 }
 
+MapDifference compare_maps(std::span<const float> map, std::span<const float> reference) {
+  if (map.size() != reference.size())
+    throw UsageError(fmt::format("maps of {} and {} cells: they must be of one grid", map.size(), reference.size()));
+  MapDifference result;
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (std::isnan(map[i]) || std::isnan(reference[i])) continue;
+    const double d = static_cast<double>(map[i]) - static_cast<double>(reference[i]);
+    sum += d;
+    squares += d * d;
+    result.maximum = std::max(result.maximum, std::abs(d));
+    ++result.cells;
+  }
+  if (result.cells > 0) {
+    result.mean = sum / static_cast<double>(result.cells);
+    result.rmse = std::sqrt(squares / static_cast<double>(result.cells));
+  }
+  return result;
+}
+
 }  // namespace retalho

@@ -10,6 +10,8 @@
 // observer the crossings with the other family of grid lines count too.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "retalho/core/context.h"
@@ -35,5 +37,16 @@ std::vector<float> intervisibility_map(const Raster& raster, const Intervisibili
 /// horizon sweep each; NaN elsewhere. For checks and small grids.
 std::vector<float> exact_intervisibility(const Raster& raster, int stride, const IntervisibilityOptions& options = {},
                                          const Context& context = {});
+
+/// How far one intervisibility map is from another (the terrain paper's table 2), in cells.
+struct MapDifference {
+  double rmse = 0;
+  double maximum = 0;  ///< largest absolute difference
+  double mean = 0;     ///< of map less reference: below 0, the map sees too little
+  std::size_t cells = 0;
+};
+
+/// Over the cells that have a number in both maps. Throws UsageError for maps of different lengths.
+MapDifference compare_maps(std::span<const float> map, std::span<const float> reference);
 
 }  // namespace retalho
