@@ -53,7 +53,8 @@ void equals_its_twin(const std::string& file) {
       }
   }
   EXPECT_EQ(differ, 0U) << "of " << cells;
-  EXPECT_GT(seen, 20U);
+  EXPECT_GT(seen, cells / 200);  // a fair share is seen, and a fair share is not
+  EXPECT_LT(seen, cells / 2);
   EXPECT_GT(cells, 200000U);
 }
 
@@ -69,8 +70,8 @@ TEST(RealGrids, ViewshedEqualsItsTwinOnMountains) {
   RETALHO_DATA_FILE(file, "dem/N44W072.hgt");
   equals_its_twin(file);
 }
-TEST(RealGrids, ViewshedEqualsItsTwinOnTheCoast) {
-  RETALHO_DATA_FILE(file, "dem/N48W125.hgt.zip");
+TEST(RealGrids, ViewshedEqualsItsTwinOnGlaciers) {
+  RETALHO_DATA_FILE(file, "dem/exploradores_aster.tif");
   equals_its_twin(file);
 }
 TEST(RealGrids, ViewshedEqualsItsTwinOnDrumlins) {
