@@ -162,7 +162,8 @@ class Estimate {
     notes.parts = parts;
     std::vector<double> vote(parts, 0);
     for (int side = 0; side < 27; ++side) {
-      const Vec3 way = {side % 3 - 1.0, side / 3 % 3 - 1.0, side / 9 - 1.0};
+      const int east = side % 3 - 1, north = side / 3 % 3 - 1, up = side / 9 - 1;
+      const Vec3 way = {static_cast<double>(east), static_cast<double>(north), static_cast<double>(up)};
       if (norm2(way) == 0) continue;
       std::vector<std::uint32_t> outermost(parts, ~0U);
       for (std::uint32_t k = 0; k < places_.size(); ++k) {
