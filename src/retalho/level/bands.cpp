@@ -70,6 +70,7 @@ class BandBuilder {
       }
       if (!has_root) {
         std::vector<Vec2> ring;
+        ring.reserve(items.size());
         for (const auto& item : items) ring.push_back(item.second);
         rings_[static_cast<std::size_t>(border[start].band)].push_back(std::move(ring));
         continue;

@@ -22,7 +22,7 @@ class AdaptiveFit {
  public:
   AdaptiveFit(const PointCloud& cloud, const TetraQuadAdaptiveOptions& adaptive, const TetraQuadFitOptions& options,
               TetraQuadFitReport& report, const Context& context)
-      : adaptive_(adaptive), options_(options), report_(report), context_(context) {
+      : adaptive_(adaptive), report_(report), context_(context) {
     TetraQuadFitOptions roots = options;
     roots.resolution = adaptive.roots;
     roots.split = TetSplit::kuhn;
@@ -158,6 +158,7 @@ class AdaptiveFit {
       total += entry.first;
     }
     std::vector<const Edge*> order;
+    order.reserve(edges.size());
     for (const auto& [key, edge] : edges) order.push_back(&edge);
     std::stable_sort(order.begin(), order.end(), [](const Edge* a, const Edge* b) { return a->sum > b->sum; });
     // Each cut adds a vertex, and closing the mesh some more: not more than the budget has room for.
@@ -274,7 +275,6 @@ class AdaptiveFit {
   }
 
   const TetraQuadAdaptiveOptions& adaptive_;
-  const TetraQuadFitOptions& options_;
   TetraQuadFitReport& report_;
   const Context& context_;
   Vec3 origin_;

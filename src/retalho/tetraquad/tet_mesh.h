@@ -31,7 +31,10 @@ enum class TetSplit : std::uint8_t { five, kuhn };
 struct TetPlace {
   LatticePoint cell{};
   std::uint8_t type = 0;
-  friend auto operator<=>(const TetPlace&, const TetPlace&) = default;
+  friend bool operator==(const TetPlace&, const TetPlace&) = default;
+  friend bool operator<(const TetPlace& a, const TetPlace& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.type < b.type;
+  }
 };
 
 /// How many a cube has.
