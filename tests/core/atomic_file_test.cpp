@@ -52,6 +52,57 @@ TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
   EXPECT_EQ(files(), 0U);
 }
 
+TEST_F(AtomicFileTest, PartsShareTheFilesFate) {
+  const auto put_parts = [](const AtomicFile& file) {
+    const std::string stem = file.temporary().substr(0, file.temporary().size() - 4);
+    write_file(file.temporary(), "shape", true);
+    write_file(stem + ".dbf", "table", true);
+    write_file(stem + ".shp.xml", "words", true);
+  };
+  {
+    AtomicFile file(name("x.shp"), false);
+    put_parts(file);
+  }
+  EXPECT_EQ(files(), 0U);
+  {
+    AtomicFile file(name("x.shp"), false);
+    put_parts(file);
+    file.commit();
+  }
+  EXPECT_EQ(files(), 3U);
+  EXPECT_EQ(read_file(name("x.dbf")), "table");
+  EXPECT_EQ(read_file(name("x.shp.xml")), "words");
+
+  // A part whose name is taken: nothing is written, nothing is left, the old one stands.
+  fs::remove(name("x.shp"));
+  write_file(name("x.dbf"), "mine", true);
+  {
+    AtomicFile file(name("x.shp"), false);
+    put_parts(file);
+    EXPECT_THROW(file.commit(), CannotWrite);
+  }
+  EXPECT_EQ(files(), 2U);
+  EXPECT_EQ(read_file(name("x.dbf")), "mine");
+  {
+    AtomicFile file(name("x.shp"), true);
+    put_parts(file);
+    file.commit();
+  }
+  EXPECT_EQ(read_file(name("x.dbf")), "table");
+
+  // A part that cannot get its name (a folder has it): said, and nothing of ours is left beside it.
+  fs::remove(name("x.shp"));
+  fs::remove(name("x.dbf"));
+  fs::create_directory(name("x.dbf"));
+  {
+    AtomicFile file(name("x.shp"), true);
+    put_parts(file);
+    EXPECT_THROW(file.commit(), CannotWrite);
+  }
+  EXPECT_FALSE(fs::exists(name("x.shp")));
+  EXPECT_EQ(files(), 2U);  // the folder, and the old x.shp.xml
+}
+
 TEST_F(AtomicFileTest, NamesTheMissingFolder) {
   try {
     write_file(name("no/such/x"), "y", false);

@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "retalho/core/error.h"
 
@@ -30,6 +32,44 @@ bool sync_path(const std::string& path, int flags) {
   ::close(fd);
   errno = saved;
   return done;
+}
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+/// What follows the stem in the names of the files beside `file` that share it, `file` itself left out. Sorted, so
+/// that the same parts are renamed in the same order on every file system.
+std::vector<std::string> parts_beside(const std::string& file) {
+  std::vector<std::string> tails;
+  const std::string own = fs::path(file).filename().string();
+  const std::string stem = fs::path(file).stem().string();
+  std::error_code ec;
+  fs::directory_iterator entry(folder_of(file), ec);
+  for (; !ec && entry != fs::directory_iterator(); entry.increment(ec)) {
+    const std::string name = entry->path().filename().string();
+    if (name != own && name.starts_with(stem + ".")) tails.push_back(name.substr(stem.size()));
+  }
+  std::sort(tails.begin(), tails.end());
+  return tails;
+}
+
+std::string with_tail(const std::string& file, const std::string& tail) {
+  return (fs::path(folder_of(file)) / (fs::path(file).stem().string() + tail)).string();
+}
+
+/// Gives `from` the name `to`. Throws CannotWrite, naming `to`.
+void take_name(const std::string& from, const std::string& to, bool overwrite) {
+  // link() refuses an existing name, so that two runs without --overwrite cannot replace each other's result.
+  if (!overwrite && ::link(from.c_str(), to.c_str()) == 0) {
+    ::unlink(from.c_str());
+    return;
+  }
+  if (!overwrite && errno == EEXIST)
+    throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", to), to);
+  if (::rename(from.c_str(), to.c_str()) != 0)
+    throw CannotWrite(fmt::format("cannot rename to '{}': {}", to, reason()), to);
 }
 
 }  // namespace
@@ -55,34 +95,29 @@ AtomicFile::AtomicFile(std::string path, bool overwrite) : path_(std::move(path)
 }
 
 AtomicFile::~AtomicFile() {
-  if (!committed_) ::unlink(temporary_.c_str());
+  if (!committed_) remove_temporaries();
+}
+
+void AtomicFile::remove_temporaries() const {
+  for (const std::string& tail : parts_beside(temporary_)) ::unlink(with_tail(temporary_, tail).c_str());
+  ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::commit() {
+  const std::vector<std::string> tails = parts_beside(temporary_);
   if (!sync_path(temporary_, O_RDONLY)) throw CannotWrite(fmt::format("cannot write '{}': {}", path_, reason()), path_);
-  // link() refuses an existing name, so that two runs without --overwrite cannot replace each other's result.
-  if (!overwrite_ && ::link(temporary_.c_str(), path_.c_str()) == 0) {
-    ::unlink(temporary_.c_str());
-  } else if (!overwrite_ && errno == EEXIST) {
-    throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", path_), path_);
-  } else if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    throw CannotWrite(fmt::format("cannot rename to '{}': {}", path_, reason()), path_);
+  for (const std::string& tail : tails) {
+    const std::string part = with_tail(path_, tail);
+    if (!sync_path(with_tail(temporary_, tail), O_RDONLY))
+      throw CannotWrite(fmt::format("cannot write '{}': {}", part, reason()), part);
+    std::error_code ec;
+    if (!overwrite_ && fs::exists(part, ec))
+      throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", part), part);
   }
+  for (const std::string& tail : tails) take_name(with_tail(temporary_, tail), with_tail(path_, tail), overwrite_);
+  take_name(temporary_, path_, overwrite_);
   committed_ = true;
-  const std::string folder = fs::path(path_).has_parent_path() ? fs::path(path_).parent_path().string() : ".";
-  sync_path(folder, O_RDONLY | O_DIRECTORY);
-}
-
-std::set<std::string> sidecars(const std::string& file) {
-  std::set<std::string> found;
-  const fs::path path(file);
-  const std::string stem = path.stem().string();
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(stem) && name != path.filename().string()) found.insert(name.substr(stem.size()));
-  }
-  return found;
+  sync_path(folder_of(path_), O_RDONLY | O_DIRECTORY);
 }
 
 void write_file(const std::string& path, std::string_view bytes, bool overwrite) {

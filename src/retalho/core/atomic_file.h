@@ -1,7 +1,6 @@
 // Outputs are complete or absent: written beside their final name, flushed to disk, renamed at the end.
 #pragma once
 
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -9,6 +8,9 @@ namespace retalho {
 
 /// A file in the making. Write to `temporary()` by any means, then `commit()`. Destroyed without commit, it leaves
 /// nothing behind and the old file, if any, untouched.
+///
+/// Some formats are several files (.shp with .dbf and .prj; .tif.aux.xml). What a writer puts beside `temporary()`
+/// under the same stem is a part of the output: it shares its fate, and takes the stem of the final name.
 class AtomicFile {
  public:
   /// Reserves a name beside `path` that ends in the same extension (so that drivers which look at it still work).
@@ -21,18 +23,19 @@ class AtomicFile {
   const std::string& path() const { return path_; }
   const std::string& temporary() const { return temporary_; }
 
-  /// fsync and rename. Throws CannotWrite (and removes the temporary) when either fails.
+  /// fsync and rename, the parts before the file itself, so that a file which is there is whole. Throws CannotWrite
+  /// when any of it fails, and when the name of a part is taken and `overwrite` is false; what was not renamed is
+  /// removed.
   void commit();
 
  private:
+  void remove_temporaries() const;
+
   std::string path_;
   std::string temporary_;
   bool overwrite_;
   bool committed_ = false;
 };
-
-/// Files beside `file` whose names go on where its stem ends (.prj, .hdr, .aux.xml): what follows the stem of each.
-std::set<std::string> sidecars(const std::string& file);
 
 /// Writes `bytes` to `path` atomically. Throws CannotWrite.
 void write_file(const std::string& path, std::string_view bytes, bool overwrite);

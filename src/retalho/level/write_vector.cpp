@@ -1,15 +1,18 @@
 #include "retalho/level/write_vector.h"
 
+#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <string_view>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
@@ -88,35 +91,60 @@ class LayerWriter {
   bool ok_ = true, in_transaction_ = false;
 };
 
-/// Lets `fill` write into a file beside `path`, then gives it, with all its parts, the name asked for.
+/// Makes `file` with `driver` and `fill`. Throws CannotWrite, naming `path`.
+void make_layer(const std::string& file, const std::string& path, const std::string& driver,
+                const std::string& layer_name, OGRwkbGeometryType type, const Georef& georef,
+                const std::function<void(LayerWriter&)>& fill) {
+  const GdalMessages messages;
+  LayerWriter writer(file, driver, layer_name, type, georef);
+  if (writer.usable()) fill(writer);
+  writer.close();
+  VSIStatBufL found;
+  if (messages.failed() || !writer.usable() || !writer.ok() || VSIStatL(file.c_str(), &found) != 0)
+    throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver, messages.words("no reason was given")),
+                      path);
+}
+
+/// A file of GDAL's in memory, gone with this object.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const std::string& ending) {
+    static std::atomic<unsigned> count{0};
+    name_ = fmt::format("/vsimem/retalho-{}{}", count++, ending);
+  }
+  ~MemoryFile() { VSIUnlink(name_.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  const std::string& name() const { return name_; }
+  std::string_view bytes() const {
+    vsi_l_offset size = 0;
+    const GByte* const data = VSIGetMemFileBuffer(name_.c_str(), &size, FALSE);
+    return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : static_cast<std::size_t>(size)};
+  }
+
+ private:
+  std::string name_;
+};
+
+/// GDAL's text writers (3.6) do not look at what a write returns: on a full disk they leave a part of the file and
+/// say nothing. Their bytes go through our own writer.
+bool writes_unchecked(const std::string& driver) {
+  return driver == "GeoJSON" || driver == "DXF";
+}
+
 void write_layer(const std::string& path, const std::string& layer_name, OGRwkbGeometryType type, const Georef& georef,
                  bool overwrite, const std::function<void(LayerWriter&)>& fill) {
   register_gdal();
   const std::string driver = driver_of(path);
-  AtomicFile file(path, overwrite);
-  const fs::path temporary(file.temporary()), target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const auto beside = [&](const fs::path& of, const std::string& tail) { return folder / (of.stem().string() + tail); };
-  std::error_code ec;
-  std::set<std::string> parts;
-  try {
-    const GdalMessages messages;
-    LayerWriter writer(file.temporary(), driver, layer_name, type, georef);
-    if (writer.usable()) fill(writer);
-    writer.close();
-    parts = sidecars(temporary.string());
-    if (messages.failed() || !writer.usable() || !writer.ok() || !fs::exists(temporary, ec))
-      throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver, messages.words("no reason was given")),
-                        path);
-    for (const std::string& tail : parts)
-      if (!overwrite && fs::exists(beside(target, tail), ec))
-        throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", beside(target, tail).string()),
-                          path);
-  } catch (...) {
-    for (const std::string& tail : sidecars(temporary.string())) fs::remove(beside(temporary, tail), ec);
-    throw;
+  AtomicFile file(path, overwrite);  // before the work, so that a name which cannot be written is said at once
+  if (writes_unchecked(driver)) {
+    const MemoryFile memory(fs::path(path).extension().string());
+    make_layer(memory.name(), path, driver, layer_name, type, georef, fill);
+    write_file(path, memory.bytes(), overwrite);
+    return;
   }
-  for (const std::string& tail : parts) fs::rename(beside(temporary, tail), beside(target, tail), ec);
+  make_layer(file.temporary(), path, driver, layer_name, type, georef, fill);
   file.commit();
 }
 

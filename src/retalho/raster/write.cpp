@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <set>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
@@ -168,11 +167,6 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
     throw CannotWrite(fmt::format("'{}': a raster without cells cannot be written", path), path);
   GDALDriver& driver = choose_driver(path, options.driver);
   AtomicFile file(path, options.overwrite);
-  const fs::path temporary(file.temporary()), target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const auto beside = [&](const fs::path& of, const std::string& tail) {
-    return (folder / (of.stem().string() + tail));
-  };
 
   // Statistics, masks and overviews beside an old file would be taken for the new one's.
   std::error_code ec;
@@ -184,31 +178,19 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
                                   leftovers.front(), path),
                       path);
 
-  std::set<std::string> made;
-  try {
-    const GdalMessages messages;
-    const CPLStringList given = creation_options(driver, raster, options);
-    if (!GDALValidateCreationOptions(&driver, given.List()))
-      throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
-                                    messages.words("a creation option is wrong")),
-                        path);
-    make(driver, file.temporary(), raster, options, messages, context);
-    made = sidecars(temporary.string());
-    if (messages.failed() || !fs::exists(temporary, ec))
-      throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
-                                    messages.words("no reason was given")),
-                        path);
-    check_voids(raster, file.temporary(), path);
-    for (const std::string& tail : made)
-      if (!options.overwrite && fs::exists(beside(target, tail), ec))
-        throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", beside(target, tail).string()),
-                          path);
-  } catch (...) {
-    for (const std::string& tail : sidecars(temporary.string())) fs::remove(beside(temporary, tail), ec);
-    throw;
-  }
+  const GdalMessages messages;
+  const CPLStringList given = creation_options(driver, raster, options);
+  if (!GDALValidateCreationOptions(&driver, given.List()))
+    throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
+                                  messages.words("a creation option is wrong")),
+                      path);
+  make(driver, file.temporary(), raster, options, messages, context);
+  if (messages.failed() || !fs::exists(file.temporary(), ec))
+    throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
+                                  messages.words("no reason was given")),
+                      path);
+  check_voids(raster, file.temporary(), path);
   for (const std::string& old : leftovers) fs::remove(old, ec);
-  for (const std::string& tail : made) fs::rename(beside(temporary, tail), beside(target, tail), ec);
   file.commit();
 }
 
