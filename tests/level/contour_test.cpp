@@ -69,6 +69,35 @@ TEST(Contours, LinesAreClosedOrEndOnTheBorder) {
   }
 }
 
+TEST(Contours, AnUndecidedStretchIsReportedOnceWithItsBox) {
+  // Along row 64, where two of the tracer's strips meet, the surface touches the level at u = 1/6, which no halving
+  // reaches: in half quanta above the level its ordinates are s (1, -3, 5, 25), which is s (6u - 1)^2.
+  constexpr double kQuantum = 1.0 / 64, kS = 1001;
+  constexpr int kRow = 64;
+  BicubicGrid grid;
+  grid.columns = 2;
+  grid.rows = 2 * kRow + 1;
+  grid.cell_width = 10;
+  grid.cell_height = 10;
+  const auto n = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+  const double base = 1'500'000;  // the largest number: 64 quanta a unit
+  grid.z.assign(n, base + 12 * kS * kQuantum);
+  grid.zu.assign(n, 0);
+  grid.zv.assign(n, 0);
+  grid.zuv.assign(n, 0);
+  grid.z[2 * kRow] = base;
+  grid.zu[2 * kRow] = 3 * -2 * kS * kQuantum;
+  grid.zu[2 * kRow + 1] = 3 * 10 * kS * kQuantum;
+  const ContourSet set = trace_contours(grid, {base - 0.5 * kS * kQuantum}, {.tolerance = 0.1});
+  std::vector<SingularPlace> flat;
+  for (const SingularPlace& place : set.singular)
+    if (place.low.y == place.high.y) flat.push_back(place);
+  ASSERT_EQ(flat.size(), 1U);
+  EXPECT_LE(flat[0].low.x, 10.0 / 6);
+  EXPECT_GE(flat[0].high.x, 10.0 / 6);
+  EXPECT_LE(flat[0].high.x - flat[0].low.x, 10 * std::ldexp(1.0, -17));
+}
+
 TEST(Contours, ComponentsEqualABruteForceCount) {
   test::Random random;
   for (int round = 0; round < 1000 * test::soak(); ++round) {

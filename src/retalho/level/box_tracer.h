@@ -341,12 +341,9 @@ class BoxTracer {
           [&](double t) {
             pool_.push_back({k, trace_.add(ends[0] + t * (ends[1] - ends[0]), k)});
           },
-          [&](double t) { report_edge(k, ends[0] + t * (ends[1] - ends[0]), ends); });
-  }
-  void report_edge(int level, Vec2 p, const std::array<Vec2, 2>& ends) {
-    ++trace_.undecided_edges;
-    const Vec2 r = (std::abs(ends[1].x - ends[0].x) + std::abs(ends[1].y - ends[0].y)) * 1e-5 * Vec2{1, 1};
-    trace_.singular.push_back({level, p - r, p + r});
+          [&](double t0, double t1) {
+            trace_.leave_undecided(k, ends[0] + t0 * (ends[1] - ends[0]), ends[0] + t1 * (ends[1] - ends[0]));
+          });
   }
 
   /// A side's list as the lists of its halves: the roots of the first half are counted exactly, the first so many are
@@ -365,7 +362,7 @@ class BoxTracer {
       const std::uint32_t n = last - i;
       std::uint32_t count = 0;
       isolate_roots<Patch::kDegree, I>(
-          edge, levels_.scaled<I>(k, scale), depth, bits, [&](double) { ++count; }, [](double) {});
+          edge, levels_.scaled<I>(k, scale), depth, bits, [&](double) { ++count; }, [](double, double) {});
       count = std::min(count, n);
       const std::uint32_t border = side.reversed ? last - count : i + count;
       for (std::uint32_t j = i; j < last; ++j)

@@ -70,9 +70,9 @@ double polish_root(const std::array<double, static_cast<std::size_t>(N + 1)>& e)
   return t;
 }
 
-/// Calls emit(t, certain) for each root of b - level on the edge, t in [0, 1] ascending. `depth` is the absolute depth
+/// Calls emit(t) for each root of b - level on the edge, t in [0, 1] ascending. `depth` is the absolute depth
 /// of the edge below its patch; `bits` bounds the ordinates' bits. A stretch of 2^-kEdgeDepth that is still undecided
-/// counts as no root where its ends are alike and as one (certain = false) where they differ; undecided(t) is told.
+/// counts as no root where its ends are alike and as one, at its middle, where they differ; undecided(t0, t1) is told.
 template <int N, class I, class Emit, class Undecided>
 void isolate_roots(const EdgeNet<N, I>& b, I level, int depth, int bits, const Emit& emit, const Undecided& undecided,
                    double start = 0, double length = 1) {
@@ -85,7 +85,7 @@ void isolate_roots(const EdgeNet<N, I>& b, I level, int depth, int bits, const E
     return;
   }
   if (depth >= kEdgeDepth) {
-    undecided(start + 0.5 * length);
+    undecided(start, start + length);
     if ((b[0] >= level) != (b[N] >= level)) emit(start + 0.5 * length);
     return;
   }

@@ -1,6 +1,7 @@
 // Internal to level/: what tracing a piece of a surface leaves: points, and which point follows which.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -33,6 +34,11 @@ struct Trace {
     next.push_back(kNoPoint);
     level.push_back(of_level);
     return static_cast<std::uint32_t>(points.size() - 1);
+  }
+  /// A stretch of an edge, from a to b, on which the roots could not be told apart.
+  void leave_undecided(int of_level, Vec2 a, Vec2 b) {
+    ++undecided_edges;
+    singular.push_back({of_level, {std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}});
   }
 };
 

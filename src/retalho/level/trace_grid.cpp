@@ -27,6 +27,7 @@ struct EdgeRow {
 struct Strip {
   Trace trace;
   std::vector<EdgeRoot> top, bottom;  ///< the roots on its first and its last row of edges
+  std::size_t top_undecided = 0;      ///< of the first row: the strip above reports the same stretches
   std::vector<BorderEdge> border;
 };
 
@@ -45,6 +46,7 @@ class StripTracer {
   void run(int first, int last, const Context& context) {
     trace_row(first, above_);
     strip_.top = above_.roots;
+    strip_.top_undecided = strip_.trace.undecided_edges;
     for (int row = first; row < last; ++row) {
       context.check();
       trace_row(row + 1, below_);
@@ -104,10 +106,8 @@ class StripTracer {
           [&](double t) {
             out.push_back({k, strip_.trace.add(from + t * (to - from), k)});
           },
-          [&](double t) {
-            ++strip_.trace.undecided_edges;
-            const Vec2 p = from + t * (to - from);
-            strip_.trace.singular.push_back({k, p, p});
+          [&](double t0, double t1) {
+            strip_.trace.leave_undecided(k, from + t0 * (to - from), from + t1 * (to - from));
           });
   }
 
@@ -212,16 +212,17 @@ Trace join(std::vector<Strip>& strips, std::vector<BorderEdge>* border) {
     if (border != nullptr)
       for (BorderEdge& e : s.border) {
         // A seam's edges are reported by both strips.
-        const bool again = k > 0 && e.horizontal && e.row == static_cast<int>(k) * kStripRows;
-        if (again) continue;
+        if (k > 0 && e.horizontal && e.row == static_cast<int>(k) * kStripRows) continue;
         for (EdgeRoot& r : e.roots) r.point = joined(r.point);
         border->push_back(std::move(e));
       }
-    all.singular.insert(all.singular.end(), s.trace.singular.begin(), s.trace.singular.end());
+    const std::size_t again = k == 0 ? 0 : s.top_undecided;
+    all.singular.insert(all.singular.end(), s.trace.singular.begin() + static_cast<std::ptrdiff_t>(again),
+                        s.trace.singular.end());
     all.pairs += s.trace.pairs;
     all.certified += s.trace.certified;
     all.boxes += s.trace.boxes;
-    all.undecided_edges += s.trace.undecided_edges;
+    all.undecided_edges += s.trace.undecided_edges - again;
     all.depth = std::max(all.depth, s.trace.depth);
     seam = std::move(last);
     s = Strip{};

@@ -31,10 +31,8 @@ void isolate_edge(const EdgeNet<N, double>& net, const std::array<Vec2, 2>& ends
         [&](double t) {
           add(EdgeRoot{k, trace.add(ends[0] + t * (ends[1] - ends[0]), k)});
         },
-        [&](double t) {
-          ++trace.undecided_edges;
-          const Vec2 p = ends[0] + t * (ends[1] - ends[0]);
-          trace.singular.push_back({k, p, p});
+        [&](double t0, double t1) {
+          trace.leave_undecided(k, ends[0] + t0 * (ends[1] - ends[0]), ends[0] + t1 * (ends[1] - ends[0]));
         });
 }
 
