@@ -15,6 +15,11 @@ pkg_check_modules(MUPARSERX REQUIRED IMPORTED_TARGET muparserx)  # curve/express
 if(RETALHO_SUITESPARSE)
   find_library(CHOLMOD_LIBRARY cholmod)
   find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+  if(CHOLMOD_LIBRARY AND CHOLMOD_INCLUDE_DIR)
+    message(STATUS "Sparse factors by CHOLMOD: the binary is bound by the GPL (README, Licence)")
+  else()
+    message(STATUS "CHOLMOD is not found: sparse factors by our own method")
+  endif()
 endif()
 include(RetalhoFlatbuffers)
 find_path(EMBREE_INCLUDE_DIR embree3/rtcore.h REQUIRED)          # tetraquad/rays: the tree that finds tetrahedra

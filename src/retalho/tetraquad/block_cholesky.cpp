@@ -1,3 +1,4 @@
+// BlockCholesky by our own multifrontal method. With SuiteSparse, block_cholesky_cholmod.cpp stands in its place.
 #include <algorithm>
 #include <utility>
 
@@ -146,14 +147,6 @@ void BlockCholesky::solve(std::span<double> x) const {
     }
     scatter(parts_->nodes[k]);
   }
-}
-
-void solve_past_ridge(const BlockCholesky& factors, double ridge, std::span<double> x) {
-  factors.solve(x);
-  std::vector<double> step(x.begin(), x.end());
-  for (double& value : step) value *= ridge;
-  factors.solve(step);
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] += step[k];
 }
 
 }  // namespace retalho

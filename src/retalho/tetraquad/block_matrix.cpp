@@ -62,4 +62,12 @@ void BlockMatrix::multiply(std::span<const double> x, std::span<double> y) const
   }
 }
 
+void solve_past_ridge(const BlockCholesky& factors, double ridge, std::span<double> x) {
+  factors.solve(x);
+  std::vector<double> step(x.begin(), x.end());
+  for (double& value : step) value *= ridge;
+  factors.solve(step);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] += step[k];
+}
+
 }  // namespace retalho
