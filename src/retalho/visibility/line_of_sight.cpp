@@ -7,11 +7,11 @@
 #include <limits>
 #include <numeric>
 
+#include "retalho/visibility/field_of_view.h"
+
 namespace retalho {
 namespace {
 
-constexpr double kEarthRadius = 6371008.8;
-constexpr double kLightSpeed = 299792458;
 constexpr double kTieSlope = 1e-10;  // as in horizon.h
 
 /// Terrain over the observer's cell, lowered by curvature.
@@ -40,7 +40,7 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
   check(observer.column, observer.row, "observer");
   check(target_column, target_row, "target");
 
-  const Ground ground{raster, observer, options.earth_curvature ? (1 - options.refraction) / (2 * kEarthRadius) : 0};
+  const Ground ground{raster, observer, visibility_detail::curvature_drop(options.earth_curvature, options.refraction)};
   const double eye = raster.at(observer.column, observer.row) + observer.height;
   const double aim = ground.at(target_column, target_row) + options.target_height;
   const int dc = target_column - observer.column, dr = target_row - observer.row;
@@ -62,9 +62,7 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
     p.at = raster.centre(observer.column + t * dc, observer.row + t * dr);
     p.ground = height;
     p.sight = eye + t * (aim - eye);
-    if (options.frequency > 0)
-      p.fresnel = std::sqrt(std::max(
-          0.0, kLightSpeed / options.frequency * p.distance * (length - p.distance) / std::max(length, 1e-300)));
+    p.fresnel = visibility_detail::fresnel_radius(options.frequency, p.distance, length);
     if (inner) {
       const bool nothing = std::isnan(height);
       // Slopes are compared, as the viewshed does: ground and sight line at the same place seen from the eye.

@@ -8,14 +8,13 @@
 #include <numbers>
 
 #include "retalho/core/parallel.h"
+#include "retalho/visibility/field_of_view.h"
 #include "retalho/visibility/horizon.h"
 
 namespace retalho {
 namespace {
 
 using namespace visibility_detail;
-
-constexpr double kEarthRadius = 6371008.8;
 
 /// One octant: where its (u, v) lies on the grid, and how far it reaches.
 struct Octant {
@@ -48,41 +47,27 @@ std::array<Octant, 8> octants(const Raster& raster, const Observer& at) {
 class Field {
  public:
   Field(const Raster& raster, const ViewshedOptions& options)
-      : width_(raster.cell_width),
-        height_(raster.cell_height),
-        radius2_(options.radius > 0 ? options.radius * options.radius : -1) {
-    drop_ = options.earth_curvature ? (1 - options.refraction) / (2 * kEarthRadius) : 0;
-    const double span = options.azimuth_to - options.azimuth_from;
-    all_round_ = span >= 360;
-    from_ = std::fmod(std::fmod(options.azimuth_from, 360) + 360, 360);
-    span_ = std::fmod(std::fmod(span, 360) + 360, 360);
-  }
+      : width_(raster.cell_width), height_(raster.cell_height), view_(options) {}
 
   double distance2(int columns, int rows) const {
     const double x = columns * width_, y = rows * height_;
     return x * x + y * y;
   }
   /// How much the Earth's curvature lowers a cell.
-  double drop(int columns, int rows) const { return drop_ == 0 ? 0 : drop_ * distance2(columns, rows); }
-  bool holds(int columns, int rows) const {
-    if (radius2_ >= 0 && distance2(columns, rows) > radius2_) return false;
-    if (all_round_) return true;
-    double azimuth = std::atan2(columns * width_, -rows * height_) * 180 / std::numbers::pi - from_;
-    azimuth -= 360 * std::floor(azimuth / 360);
-    return azimuth <= span_;
-  }
+  double drop(int columns, int rows) const { return view_.drop() == 0 ? 0 : view_.drop() * distance2(columns, rows); }
+  bool holds(int columns, int rows) const { return view_.holds({columns * width_, -rows * height_}); }
   /// Rings beyond this along an axis of that step are out of the radius.
   int rings(int reach, double step) const {
-    return radius2_ < 0
+    return view_.radius2() < 0
                ? reach
-               : static_cast<int>(std::min<double>(reach, std::floor(std::sqrt(radius2_) / step * (1 + 1e-12))));
+               : static_cast<int>(std::min<double>(reach, std::floor(std::sqrt(view_.radius2()) / step * (1 + 1e-12))));
   }
   double width() const { return width_; }
   double height() const { return height_; }
 
  private:
-  double width_, height_, radius2_, drop_ = 0, from_ = 0, span_ = 360;
-  bool all_round_ = true;
+  double width_, height_;
+  FieldOfView view_;
 };
 
 /// Sweeps one octant and calls sink(column, row, needed): the target height above the ground at which the cell's
@@ -219,17 +204,12 @@ void mark_visible(const Raster& raster, const Observer& observer, const Viewshed
                   const Context& context, const Mark& mark) {
   check_observer(raster, observer);
   const Field field(raster, options);
-  const double low = std::tan(std::clamp(options.lowest, -89.999999, 89.999999) * std::numbers::pi / 180);
-  const double high = std::tan(std::clamp(options.highest, -89.999999, 89.999999) * std::numbers::pi / 180);
-  const bool limited = options.lowest > -90 || options.highest < 90;
+  const FieldOfView view(options);
   mark(raster.index(observer.column, observer.row));
   sweep(raster, observer, options, context, [&](int column, int row, double needed, double over, int k) {
     if (needed > options.target_height + kTieSlope * k) return;
-    if (limited) {
-      const double slope =
-          (over + options.target_height) / std::sqrt(field.distance2(column - observer.column, row - observer.row));
-      if (slope < low || slope > high) return;
-    }
+    const double distance2 = field.distance2(column - observer.column, row - observer.row);
+    if (!view.holds_elevation(over + options.target_height, distance2)) return;
     mark(raster.index(column, row));
   });
 }
