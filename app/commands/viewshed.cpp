@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
+#include "sight_line.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/visibility/intervisibility.h"
 #include "retalho/visibility/line_of_sight.h"
+#include "retalho/visibility/surface_viewshed.h"
 #include "retalho/visibility/viewshed.h"
 
 namespace retalho::app {
@@ -24,8 +28,8 @@ struct Options {
   std::vector<std::string> observers;
   double observer_height = 2, target_height = 0, radius = 0, refraction = 0.13, frequency = 0;
   std::vector<double> azimuth, vertical;
-  bool curvature = false, intervisibility = false;
-  int directions = 180;
+  bool curvature = false, intervisibility = false, exact = false;
+  int directions = 180, stride = 0;
 };
 
 /// The grid, or the model sampled at the cells of the grid that it was made from.
@@ -56,130 +60,224 @@ Raster load_heights(const Program& program, const Options& options, const Contex
   return raster;
 }
 
-Observer parse_observer(const Raster& raster, const std::string& text, double height) {
+/// Where the observers stand, as the options say it: X,Y or X,Y,HEIGHT in the CRS.
+struct Place {
+  Vec2 crs;
+  double height;
+};
+Place parse_place(const std::string& text, double height) {
   const std::size_t first = text.find(','), second = first == std::string::npos ? first : text.find(',', first + 1);
-  if (second == std::string::npos) return observer_at(raster, parse_point("--observer", text), height);
+  if (second == std::string::npos) return {parse_point("--observer", text), height};
   char* end = nullptr;
   const std::string last = text.substr(second + 1);
   height = std::strtod(last.c_str(), &end);
   if (last.empty() || *end != '\0' || !std::isfinite(height))
     throw UsageError(fmt::format("--observer '{}': expected X,Y or X,Y,HEIGHT", text), {}, "--observer");
-  return observer_at(raster, parse_point("--observer", text.substr(0, second)), height);
+  return {parse_point("--observer", text.substr(0, second)), height};
 }
 
-void check_metres(const Program& program, const Raster& raster) {
-  if (raster.georef.unit != "metre" && raster.georef.unit != "meter" && raster.georef.unit != "m")
+void check_metres(const Program& program, const Georef& georef) {
+  if (georef.unit != "metre" && georef.unit != "meter" && georef.unit != "m")
     program.say(fmt::format("warning: --earth-curvature and --frequency need metres; the distances here are in '{}'",
-                            raster.georef.unit));
+                            georef.unit));
 }
 
-/// The sight line between an observer and a point: verdict, clearances and profile.
-void sight_line(const Program& program, const Options& options, const Raster& raster, const Observer& observer) {
-  const Observer target = observer_at(raster, parse_point("--to", options.to), 0);
-  const SightLine line = line_of_sight(raster, observer, target.column, target.row,
-                                       {options.target_height, options.frequency, options.curvature, options.refraction,
-                                        static_cast<VoidRule>(choose("--void", options.voids, kVoid))});
-  nlohmann::ordered_json json = {{"visible", line.visible}, {"distance", line.profile.back().distance}};
-  const auto number = [](double v) {
-    return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr);
-  };
-  json["clearance"] = number(line.clearance);
-  json["blocked_at"] = number(line.blocked_at);
-  if (options.frequency > 0) json["fresnel_clearance"] = number(line.fresnel_clear);
-  json["profile"] = nlohmann::ordered_json::array();
-  for (const ProfilePoint& p : line.profile) {
-    const Vec2 at = raster.georef.to_crs(p.at);
-    nlohmann::ordered_json point = {
-        {"distance", p.distance}, {"x", at.x}, {"y", at.y}, {"ground", number(p.ground)}, {"sight", p.sight}};
-    if (options.frequency > 0) point["fresnel_radius"] = p.fresnel;
-    json["profile"].push_back(point);
+ViewshedOptions field_of(const Options& options) {
+  ViewshedOptions field;
+  field.target_height = options.target_height;
+  field.radius = options.radius;
+  if (options.azimuth.size() == 2) {
+    field.azimuth_from = options.azimuth[0];
+    field.azimuth_to = options.azimuth[1] < options.azimuth[0] ? options.azimuth[1] + 360 : options.azimuth[1];
   }
-  if (program.json) return program.print(json);
-  std::string text =
-      line.visible
-          ? fmt::format("visible over {:.6g}, lowest clearance {:.6g}\n", line.profile.back().distance, line.clearance)
-          : fmt::format("not visible: blocked at {:.6g} of {:.6g}\n", line.blocked_at, line.profile.back().distance);
-  if (options.frequency > 0)
-    text += fmt::format("first Fresnel zone: {:.0f} % clear at the narrowest\n",
-                        100 * std::clamp(line.fresnel_clear, 0.0, 1.0));
-  program.print(text);
+  if (options.vertical.size() == 2) {
+    field.lowest = options.vertical[0];
+    field.highest = options.vertical[1];
+  }
+  field.earth_curvature = options.curvature;
+  field.refraction = options.refraction;
+  field.voids = static_cast<VoidRule>(choose("--void", options.voids, kVoid));
+  return field;
 }
 
-void run(const Program& program, const Options& options) {
-  const Stopwatch watch;
-  if (options.intervisibility && (!options.observers.empty() || !options.to.empty()))
-    throw UsageError("--intervisibility looks from every cell: leave out --observer and --to", {}, "--intervisibility");
-  if (!options.intervisibility && options.observers.empty())
-    throw UsageError("give --observer X,Y (or --intervisibility)", {}, "--observer");
-  if (options.to.empty() && options.output.empty()) throw UsageError("give the output with -o", {}, "-o");
-  if (!options.output.empty()) check_output(program, options.output, {}, {options.input});
-  const std::size_t what = choose("--what", options.what, kWhat), voids = choose("--void", options.voids, kVoid);
-  const Context context = program.context();
-  Raster raster = load_heights(program, options, context);
-  if (options.curvature || options.frequency > 0) check_metres(program, raster);
-  nlohmann::ordered_json json;
-  if (options.intervisibility) {
-    std::vector<float> map = intervisibility_map(
-        raster, {options.directions, options.observer_height, options.target_height, options.radius}, context);
-    double sum = 0;
-    std::size_t n = 0;
-    for (const float v : map)
-      if (!std::isnan(v)) {
-        sum += static_cast<double>(v);
-        ++n;
-      }
-    raster.heights = std::move(map);
-    json = {{"directions", options.directions},
-            {"cells", raster.cells()},
-            {"valid_cells", n},
-            {"mean_cells_seen", n > 0 ? sum / static_cast<double>(n) : 0.0}};
-    program.say(
-        "a cell is seen when the straight line to its centre is nowhere under the terrain, heights linear between "
-        "neighbouring cells; the map is within about 0.06 % of the cells (RMSE at 180 directions)");
-  } else {
-    std::vector<Observer> observers;
-    for (const std::string& text : options.observers)
-      observers.push_back(parse_observer(raster, text, options.observer_height));
-    if (!options.to.empty()) return sight_line(program, options, raster, observers.front());
-    ViewshedOptions field;
-    field.target_height = options.target_height;
-    field.radius = options.radius;
-    if (options.azimuth.size() == 2) {
-      field.azimuth_from = options.azimuth[0];
-      field.azimuth_to = options.azimuth[1] < options.azimuth[0] ? options.azimuth[1] + 360 : options.azimuth[1];
-    }
-    if (options.vertical.size() == 2) {
-      field.lowest = options.vertical[0];
-      field.highest = options.vertical[1];
-    }
-    field.earth_curvature = options.curvature;
-    field.refraction = options.refraction;
-    field.voids = static_cast<VoidRule>(voids);
-    std::vector<float> result(raster.cells());
-    std::size_t seen = 0;
-    const std::vector<std::uint32_t> counts = observer_counts(raster, observers, field, context);
-    for (const std::uint32_t c : counts) seen += c > 0 ? 1U : 0U;
-    if (what == 2) {
-      result = needed_heights(raster, observers, field, context);
-    } else {
-      for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = std::isnan(raster.at(i)) ? std::numeric_limits<float>::quiet_NaN()
-                    : what == 0              ? (counts[i] > 0 ? 1.0F : 0.0F)
-                                             : static_cast<float>(counts[i]);
-    }
-    raster.heights = std::move(result);
-    json = {{"observers", observers.size()}, {"visible_cells", seen}, {"cells", raster.cells()}};
-  }
+/// Writes the map that `raster` has become, and says how long it took.
+void finish(const Program& program, const Options& options, Raster& raster, std::vector<float> map,
+            nlohmann::ordered_json json, const std::string& words, const Stopwatch& watch, const Context& context) {
+  raster.heights = std::move(map);
   raster.height_unit.clear();
   context.check();
   write_raster(raster, options.output, {.overwrite = program.overwrite}, context);
   json["seconds"] = watch.seconds();
   if (program.json) return program.print(json);
-  if (options.intervisibility)
-    program.say(fmt::format("{}: cells seen by each cell, {} directions, {:.6g} on average", options.output,
-                            options.directions, json["mean_cells_seen"].get<double>()));
+  program.print(words);
+}
+
+/// Keeps the middle cell of each stride x stride block, as one cell of that size.
+std::vector<float> thin(Raster& raster, const std::vector<float>& map, int stride) {
+  const int first = stride / 2;
+  const Vec2 origin = raster.georef.to_crs(raster.centre(first, first));
+  std::vector<float> kept;
+  int rows = 0;
+  for (int row = first; row < raster.rows; row += stride, ++rows)
+    for (int column = first; column < raster.columns; column += stride) kept.push_back(map[raster.index(column, row)]);
+  raster.columns = static_cast<int>(kept.size()) / rows;
+  raster.rows = rows;
+  raster.cell_width *= stride;
+  raster.cell_height *= stride;
+  raster.georef.origin_x = origin.x;
+  raster.georef.origin_y = origin.y;
+  return kept;
+}
+
+void run_intervisibility(const Program& program, const Options& options, const Stopwatch& watch) {
+  if (!options.observers.empty() || !options.to.empty())
+    throw UsageError("--intervisibility looks from every cell: leave out --observer and --to", {}, "--intervisibility");
+  if (options.exact) throw UsageError("--intervisibility works on cells: leave out --exact", {}, "--exact");
+  const Context context = program.context();
+  Raster raster = load_heights(program, options, context);
+  if (options.stride > std::min(raster.columns, raster.rows))
+    throw UsageError(
+        fmt::format("--stride {}: the grid has {} x {} cells", options.stride, raster.columns, raster.rows), {},
+        "--stride");
+  const std::size_t cells = raster.cells();
+  const IntervisibilityOptions field{options.directions, options.observer_height, options.target_height,
+                                     options.radius};
+  std::vector<float> map;
+  if (options.stride > 0) {
+    map = exact_intervisibility(raster, options.stride, field, context);
+    map = thin(raster, map, options.stride);
+  } else {
+    map = intervisibility_map(raster, field, context);
+    program.say(
+        "a cell is seen when the straight line to its centre is nowhere under the terrain, heights linear between "
+        "neighbouring cells; the map is within about 0.06 % of the cells (RMSE at 180 directions); --stride counts "
+        "exactly");
+  }
+  double sum = 0;
+  std::size_t n = 0;
+  for (const float v : map)
+    if (!std::isnan(v)) {
+      sum += static_cast<double>(v);
+      ++n;
+    }
+  const double mean = n > 0 ? sum / static_cast<double>(n) : 0.0;
+  nlohmann::ordered_json json = {{"cells", cells}, {"valid_cells", n}, {"mean_cells_seen", mean}};
+  if (options.stride > 0)
+    json["stride"] = options.stride;
   else
-    program.print(fmt::format("visible cells  {} of {}\n", json["visible_cells"].get<std::size_t>(), raster.cells()));
+    json["directions"] = options.directions;
+  finish(program, options, raster, std::move(map), json,
+         fmt::format("cells seen     {:.6g} on average, from {} cells\n", mean, n), watch, context);
+}
+
+/// 1 or 0, the number of observers, or the height that is needed: as --what says.
+std::vector<float> result_of(std::size_t what, const std::vector<std::uint32_t>& counts, std::size_t& seen,
+                             const std::function<bool(std::size_t)>& valid) {
+  std::vector<float> result(counts.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    seen += counts[i] > 0 ? 1U : 0U;
+    result[i] = !valid(i)   ? std::numeric_limits<float>::quiet_NaN()
+                : what == 0 ? (counts[i] > 0 ? 1.0F : 0.0F)
+                            : static_cast<float>(counts[i]);
+  }
+  return result;
+}
+std::vector<float> result_of_needed(std::vector<float> needed, double target_height, std::size_t& seen) {
+  for (const float h : needed) seen += static_cast<double>(h) <= target_height ? 1U : 0U;
+  return needed;
+}
+
+/// On cells: of the grid, or of the model's own grid.
+void run_cells(const Program& program, const Options& options, const Stopwatch& watch) {
+  const Context context = program.context();
+  Raster raster = load_heights(program, options, context);
+  if (options.curvature || options.frequency > 0) check_metres(program, raster.georef);
+  std::vector<Observer> observers;
+  for (const std::string& text : options.observers) {
+    const Place place = parse_place(text, options.observer_height);
+    observers.push_back(observer_at(raster, place.crs, place.height));
+  }
+  const ViewshedOptions field = field_of(options);
+  if (!options.to.empty()) {
+    const Observer target = observer_at(raster, parse_point("--to", options.to), 0);
+    return report_sight_line(
+        program,
+        line_of_sight(raster, observers.front(), target.column, target.row,
+                      {options.target_height, options.frequency, options.curvature, options.refraction, field.voids}),
+        raster.georef, options.frequency > 0, options.output);
+  }
+  std::size_t seen = 0;
+  const std::size_t what = choose("--what", options.what, kWhat);
+  std::vector<float> map =
+      what == 2 ? result_of_needed(needed_heights(raster, observers, field, context), field.target_height, seen)
+                : result_of(what, observer_counts(raster, observers, field, context), seen,
+                            [&](std::size_t i) { return !std::isnan(raster.at(i)); });
+  finish(program, options, raster, std::move(map),
+         {{"observers", observers.size()}, {"visible_cells", seen}, {"cells", raster.cells()}, {"exact", false}},
+         fmt::format("visible cells  {} of {}\n", seen, raster.cells()), watch, context);
+}
+
+/// On a model's surface itself.
+void run_surface(const Program& program, const Options& options, const Stopwatch& watch) {
+  if (!is_model_file(options.input))
+    throw UsageError(
+        fmt::format("--exact asks for a model, and '{}' is none: fit the grid first (retalho fit)", options.input),
+        options.input, "--exact");
+  const Context context = program.context();
+  const Terrain terrain = load_terrain(options.input);
+  const TerrainEvaluator evaluator(terrain, context);
+  if (options.curvature || options.frequency > 0) check_metres(program, terrain.georef);
+  std::vector<SurfaceObserver> observers;
+  for (const std::string& text : options.observers) {
+    const Place place = parse_place(text, options.observer_height);
+    observers.push_back({terrain.georef.to_local(place.crs), place.height});
+  }
+  const ViewshedOptions field = field_of(options);
+  if (!options.to.empty()) {
+    const Vec2 target = terrain.georef.to_local(parse_point("--to", options.to));
+    return report_sight_line(program,
+                             surface_line_of_sight(evaluator, observers.front(), target,
+                                                   {options.target_height, options.frequency, options.curvature,
+                                                    options.refraction, field.voids}),
+                             terrain.georef, options.frequency > 0, options.output);
+  }
+  std::size_t seen = 0;
+  const std::size_t what = choose("--what", options.what, kWhat);
+  Raster raster;
+  raster.columns = terrain.grid.columns;
+  raster.rows = terrain.grid.rows;
+  raster.cell_width = terrain.grid.cell_width;
+  raster.cell_height = terrain.grid.cell_height;
+  raster.georef = terrain.georef;
+  std::vector<float> map;
+  if (what == 2) {
+    map = result_of_needed(surface_needed_heights(evaluator, observers, field, context), field.target_height, seen);
+  } else {
+    const auto valid = [&](std::size_t i) {
+      const auto columns = static_cast<std::size_t>(raster.columns);
+      return terrain.grid.has_data(raster.centre(static_cast<int>(i % columns), static_cast<int>(i / columns)));
+    };
+    map = result_of(what, surface_observer_counts(evaluator, observers, field, context), seen, valid);
+  }
+  program.say(fmt::format("{}: the {} surface itself, at the centres of {} x {} cells", options.input,
+                          surface_name(terrain.kind), raster.columns, raster.rows));
+  finish(program, options, raster, std::move(map),
+         {{"observers", observers.size()}, {"visible_cells", seen}, {"cells", raster.cells()}, {"exact", true}},
+         fmt::format("visible cells  {} of {}\n", seen, raster.cells()), watch, context);
+}
+
+void run(const Program& program, const Options& options) {
+  const Stopwatch watch;
+  if (!options.intervisibility && options.observers.empty())
+    throw UsageError("give --observer X,Y (or --intervisibility)", {}, "--observer");
+  if (options.stride > 0 && !options.intervisibility)
+    throw UsageError("--stride thins the map of --intervisibility: give both", {}, "--stride");
+  if (options.to.empty() && options.output.empty()) throw UsageError("give the output with -o", {}, "-o");
+  if (!options.output.empty()) check_output(program, options.output, {}, {options.input});
+  choose("--what", options.what, kWhat);
+  choose("--void", options.voids, kVoid);
+  if (options.intervisibility) return run_intervisibility(program, options, watch);
+  options.exact ? run_surface(program, options, watch) : run_cells(program, options, watch);
 }
 
 }  // namespace
@@ -190,10 +288,11 @@ void add_viewshed(CLI::App& root, Program& program) {
       root, program, "viewshed", "What is seen from where; how many cells each cell sees; a sight line",
       "  retalho viewshed dem.tif -o seen.tif --observer 502300,4401200,10\n"
       "  retalho viewshed dem.tif -o count.tif --what count --observer 502300,4401200 --observer 503000,4402000\n"
-      "  retalho viewshed dem.tif --observer 502300,4401200,15 --to 505000,4403000 --frequency 2.4e9 --json\n"
+      "  retalho viewshed dem.tif --observer 502300,4401200,15 --to 505000,4403000 --frequency 2.4e9 -o sight.svg\n"
+      "  retalho viewshed model.retalho -o seen.tif --exact --observer 502300,4401200,10\n"
       "  retalho viewshed model.retalho -o map.tif --intervisibility --radius 3000");
   command->add_option("INPUT", options->input, "Elevation grid or model")->required();
-  command->add_option("-o,--output", options->output, "Raster of the result");
+  command->add_option("-o,--output", options->output, "Raster of the result; of --to a picture");
   command
       ->add_option("--observer", options->observers,
                    "Where it stands, in the CRS, and its height above the ground; may be repeated")
@@ -215,11 +314,23 @@ void add_viewshed(CLI::App& root, Program& program) {
   command->add_flag("--earth-curvature", options->curvature, "Lower heights by the Earth's curvature less refraction");
   command->add_option("--refraction", options->refraction, "With --earth-curvature: 0.13 light (default), 0.25 radio");
   command->add_option("--void", options->voids, "Void cells: transparent (default) or blocks");
-  command->add_option("--to", options->to, "Only the sight line from the observer to here, on standard output")
+  command
+      ->add_option("--to", options->to,
+                   "Only the sight line from the observer to here: on standard output, and with -o a profile as .svg, "
+                   ".pdf or .png")
       ->type_name("X,Y");
   command->add_option("--frequency", options->frequency, "With --to: Hz, for the Fresnel zone")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--intervisibility", options->intervisibility, "For each cell the number of cells that it sees");
+  command->add_flag(
+      "--exact", options->exact,
+      "A model's surface itself decides, not its heights at cells; observers stand where they are said to");
+  command
+      ->add_option(
+          "--stride", options->stride,
+          "With --intervisibility: exact counts from every N-th cell of every N-th row; cells N times as large")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   command->add_option("--directions", options->directions, "Of --intervisibility (default 180)")
       ->check(CLI::Range(4, 3600));
   add_grid_flags(*command, options->grid);

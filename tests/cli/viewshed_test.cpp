@@ -64,6 +64,57 @@ TEST(Viewshed, IntervisibilityMapAndModels) {
   EXPECT_EQ(run(folder, "viewshed m.retalho -o w.tif --observer 1105,2155,2 --json").json()["visible_cells"], 21 * 30);
 }
 
+TEST(Viewshed, ExactAsksTheSurfaceOfAModel) {
+  const Wall folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 0 --surface linear").code, 0);
+  const Outcome outcome = run(folder, "viewshed m.retalho --exact -o w.tif --observer 1105,2155,2 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.json()["exact"].get<bool>());
+  EXPECT_EQ(outcome.json()["visible_cells"], 21 * 30);
+  EXPECT_EQ(read_raster(folder / "w.tif").at(30, 5), 0);
+  ASSERT_EQ(run(folder, "viewshed m.retalho --exact -o h.tif --what height --observer 1105,2155,2").code, 0);
+  EXPECT_NEAR(read_raster(folder / "h.tif").at(30, 14), 98, 1e-3);
+  const Outcome line = run(folder, "viewshed m.retalho --exact --observer 1105,2155,2 --to 1305,2155 --json");
+  ASSERT_EQ(line.code, 0) << line.err;
+  // Level at 2 to 0: it meets the wall's foot, which rises 5 a unit from 90 on.
+  EXPECT_NEAR(line.json()["blocked_at"].get<double>(), 90.22, 0.05);
+  EXPECT_EQ(run(folder, "viewshed dem.asc --exact -o x.tif --observer 1105,2155,2").code, 2);
+  EXPECT_EQ(run(folder, "viewshed m.retalho --exact -o x.tif --observer 5,5,2").code, 3);
+  EXPECT_EQ(run(folder, "viewshed m.retalho --exact --intervisibility -o x.tif").code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.tif"));
+}
+
+TEST(Viewshed, ASightLineCanBeDrawn) {
+  const Wall folder;
+  for (const char* name : {"line.svg", "line.png", "line.pdf"})
+    ASSERT_EQ(
+        run(folder, std::string("viewshed dem.asc --observer 1105,2155,2 --to 1305,2155 --frequency 1e9 -o ") + name)
+            .code,
+        0);
+  const std::string svg = bytes_of(folder / "line.svg");
+  EXPECT_NE(svg.find("blocked at"), std::string::npos);
+  EXPECT_NE(svg.find("Fresnel"), std::string::npos);
+  EXPECT_EQ(run(folder, "viewshed dem.asc --observer 1105,2155,2 --to 1305,2155 -o line.xyz").code, 2);
+  EXPECT_EQ(run(folder, "viewshed dem.asc --observer 1105,2155,2 --to 1105,2155 -o none.svg").code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "none.svg"));
+}
+
+TEST(Viewshed, StrideCountsExactlyFromFewerCells) {
+  const Wall folder;
+  const Outcome outcome = run(folder, "viewshed dem.asc -o s.tif --intervisibility --stride 5 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["valid_cells"], 8 * 6);
+  const Raster map = read_raster(folder / "s.tif");
+  EXPECT_EQ(map.columns, 8);
+  EXPECT_EQ(map.rows, 6);
+  EXPECT_EQ(map.cell_width, 50);
+  EXPECT_EQ(map.georef.origin_x, 1025);  // the middle of the first five
+  EXPECT_EQ(map.at(0, 0), 21 * 30);
+  EXPECT_EQ(map.at(7, 5), 20 * 30);
+  EXPECT_EQ(run(folder, "viewshed dem.asc -o t.tif --intervisibility --stride 31").code, 2);
+  EXPECT_EQ(run(folder, "viewshed dem.asc -o t.tif --stride 3 --observer 1105,2155").code, 2);
+}
+
 TEST(Viewshed, CompareTellsHowFarTheMapsAreAndDrawsThem) {
   const Wall folder;
   ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 0 --surface linear").code, 0);
