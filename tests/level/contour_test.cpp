@@ -72,7 +72,7 @@ TEST(Contours, LinesAreClosedOrEndOnTheBorder) {
 TEST(Contours, AnUndecidedStretchIsReportedOnceWithItsBox) {
   // Along row 64, where two of the tracer's strips meet, the surface touches the level at u = 1/6, which no halving
   // reaches: in half quanta above the level its ordinates are s (1, -3, 5, 25), which is s (6u - 1)^2.
-  constexpr double kQuantum = 1.0 / 64, kS = 1001;
+  constexpr double kQuantum = 1.0 / 4, kS = 1001;
   constexpr int kRow = 64;
   BicubicGrid grid;
   grid.columns = 2;
@@ -80,7 +80,7 @@ TEST(Contours, AnUndecidedStretchIsReportedOnceWithItsBox) {
   grid.cell_width = 10;
   grid.cell_height = 10;
   const auto n = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
-  const double base = 1'500'000;  // the largest number: 64 quanta a unit
+  const double base = 1'500'000;  // the largest number: 4 quanta a unit
   grid.z.assign(n, base + 12 * kS * kQuantum);
   grid.zu.assign(n, 0);
   grid.zv.assign(n, 0);

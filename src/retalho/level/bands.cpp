@@ -179,7 +179,7 @@ std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels
     DirectedBorder piece{grid.node(c, r),
                          grid.node(forward ? c1 : column, forward ? r1 : row),
                          {c * grid.cell_width, -r * grid.cell_height},
-                         levels.at_most(2.0 * grid.z[grid.node(c, r)], 1.0),
+                         levels.at_most(2.0 * grid.z[grid.node(c, r)]),
                          {}};
     if (const auto found = roots.find(key(column, row, horizontal)); found != roots.end()) {
       for (const EdgeRoot& root : found->second) piece.roots.push_back(root.point);
@@ -210,7 +210,7 @@ std::vector<DirectedBorder> terrain_border(const Terrain& terrain, const EdgeTab
     for (std::size_t k = 0; k < 3; ++k) {
       if (tin.neighbors[t][k] != kNone) continue;
       const std::uint32_t a = tin.triangles[t][(k + 1) % 3], b = tin.triangles[t][(k + 2) % 3];
-      DirectedBorder piece{a, b, tin.points[a], levels.at_most(2 * std::nearbyint(tin.heights[a] * per_unit), 1.0), {}};
+      DirectedBorder piece{a, b, tin.points[a], levels.at_most(2 * std::nearbyint(tin.heights[a] * per_unit)), {}};
       const std::size_t first = static_cast<std::size_t>(outer.halves) * edges.of_triangle[t][k];
       for (std::uint32_t i = outer.start[first]; i < outer.start[first + static_cast<std::size_t>(outer.halves)]; ++i)
         piece.roots.push_back(outer.roots[i].point);

@@ -59,8 +59,8 @@ class BoxTracer {
   BoxTracer(const FixedLevels& levels, double tolerance, bool mirrored, Trace& trace)
       : levels_(levels), tolerance_(tolerance), mirrored_(mirrored), trace_(trace) {}
 
-  /// Traces a patch whose sides have these roots. `bits` bounds the ordinates' bits.
-  void trace_patch(const typename Patch::template Net<double>& net, const Frame& frame, int bits,
+  /// Traces a patch whose sides have these roots.
+  void trace_patch(typename Patch::template Net<double> net, const Frame& frame,
                    const std::array<std::span<const EdgeRoot>, Patch::kSides>& sides,
                    const std::array<bool, Patch::kSides>& reversed) {
     pool_.clear();
@@ -70,7 +70,12 @@ class BoxTracer {
       pool_.insert(pool_.end(), sides[s].begin(), sides[s].end());
       own[s].end = static_cast<std::uint32_t>(pool_.size());
     }
-    Box<double> box{net, frame, 0, 1, bits};
+    // Counted from the middle of the patch's own range, ordinates have few bits, and more halvings fit into a double.
+    const auto [low, high] = std::minmax_element(net.begin(), net.end());
+    const double middle = 2 * std::floor(0.25 * (*low + *high)), reach = std::max(*high - middle, middle - *low);
+    base_ = static_cast<std::int64_t>(middle);
+    for (double& b : net) b -= middle;
+    const Box<double> box{net, frame, 0, 1, 1, reach > 0 ? std::ilogb(reach) + 1 : 1};
     trace_.pairs += visit(box, 0, levels_.count(), own);
   }
 
@@ -80,8 +85,9 @@ class BoxTracer {
     typename Patch::template Net<I> net;
     Frame frame;
     int depth;
-    I scale;  ///< ordinates are doubled quanta times this
-    int bits;
+    I scale;  ///< ordinates are doubled quanta over base_ times this
+    double per_scale;
+    int bits;  ///< of the largest ordinate
   };
   /// A list in the pool; reversed: it runs against the side's own direction.
   struct Side {
@@ -100,8 +106,7 @@ class BoxTracer {
       low = b < low ? b : low;
       high = b > high ? b : high;
     }
-    from = std::max(from, levels_.at_most<I>(low, box.scale));
-    to = std::min(to, levels_.at_most<I>(high, box.scale));
+    narrow<I>(low, high, box.scale, box.per_scale, from, to);
     if (from >= to) return 0;
     const auto pairs = static_cast<std::size_t>(to - from);
     Certificate certificate;
@@ -131,6 +136,19 @@ class BoxTracer {
       }
     }
     return pairs;
+  }
+
+  template <class I>
+  I threshold(int level, I scale) const {
+    return levels_.scaled<I>(level, scale, base_);
+  }
+  /// Leaves the levels of [from, to) that may cross ordinates from low to high. All of them cross the parent's, so
+  /// that their thresholds have no more bits than its ordinates.
+  template <class I>
+  void narrow(I low, I high, I scale, double per_scale, int& from, int& to) const {
+    const int first = levels_.at_most_between<I>(low, static_cast<double>(low) * per_scale, scale, base_, from, to);
+    to = levels_.at_most_between<I>(high, static_cast<double>(high) * per_scale, scale, base_, first, to);
+    from = first;
   }
 
   /// The roots of one level around the box, counter-clockwise in parameters, into found_; found_side_ says where.
@@ -178,7 +196,7 @@ class BoxTracer {
   /// Is the corner where the walk around the box starts above the level?
   template <class I>
   bool first_above(const Box<I>& box, int level) const {
-    return box.net[0] >= levels_.scaled<I>(level, box.scale);
+    return box.net[0] >= threshold<I>(level, box.scale);
   }
 
   /// The arc between the two roots in found_, cut until every chord is within the tolerance. False: halve the box
@@ -198,7 +216,7 @@ class BoxTracer {
       }
       const Vec2 p = Patch::clamp(box.frame.parameters(trace_.points[start]));
       const Vec2 q = Patch::clamp(box.frame.parameters(trace_.points[end]));
-      Work w{level, static_cast<double>(levels_.scaled<I>(level, box.scale)),
+      Work w{level, static_cast<double>(threshold<I>(level, box.scale)),
              2 * levels_.tube(level) * static_cast<double>(box.scale), certificate, start};
       const double need = second_.chord_bound(q - p);
       // Both ends on one side: the chord would lie on that side, perhaps on the neighbour's chord.
@@ -271,7 +289,7 @@ class BoxTracer {
       if (!(next >= low && next <= high)) next = 0.5 * (low + high);
       const double moved = std::abs(next - s);
       s = next;
-      if (moved <= 1e-5 * reach) break;  // what is left is about its square
+      if (moved <= 3e-4 * reach) break;  // what is left is about its square
       Patch::evaluate(net_, start + s * d, f, derivatives);
       f -= work.threshold;
       slope = dot(derivatives, d);
@@ -282,10 +300,11 @@ class BoxTracer {
 
   template <class I>
   void split(const Box<I>& box, int from, int to, const Sides& sides) {
-    if constexpr (std::is_same_v<I, double>) {
-      if (box.bits + Patch::kBitsADepth > 53) {
-        Box<Int128> wide{{}, box.frame, box.depth, static_cast<Int128>(box.scale), box.bits};
-        for (std::size_t i = 0; i < box.net.size(); ++i) wide.net[i] = static_cast<Int128>(box.net[i]);
+    if constexpr (!std::is_void_v<typename Exact<I>::Wider>) {
+      if (box.bits + Patch::kBitsADepth > Exact<I>::kBits) {
+        using Wider = typename Exact<I>::Wider;
+        Box<Wider> wide{{}, box.frame, box.depth, static_cast<Wider>(box.scale), box.per_scale, box.bits};
+        for (std::size_t i = 0; i < box.net.size(); ++i) wide.net[i] = static_cast<Wider>(box.net[i]);
         split(wide, from, to, sides);
         return;
       }
@@ -294,6 +313,7 @@ class BoxTracer {
     std::array<typename Patch::template Net<I>, 4> nets;
     Patch::template split<I>(box.net, nets);
     const I scale = box.scale * (1 << Patch::kBitsADepth);
+    const double per_scale = box.per_scale / (1 << Patch::kBitsADepth);
     const int depth = box.depth + 1, bits = box.bits + Patch::kBitsADepth;
     std::array<Frame, 4> frames;
     for (int c = 0; c < 4; ++c) frames[static_cast<std::size_t>(c)] = Patch::child_frame(box.frame, c);
@@ -303,8 +323,8 @@ class BoxTracer {
       const auto child = static_cast<std::size_t>(Patch::kInnerSide[e][0]);
       const int side = Patch::kInnerSide[e][1];
       inner[e] = {static_cast<std::uint32_t>(pool_.size()), 0, false};
-      find_roots<I>(Patch::template edge<I>(nets[child], side), Patch::ends(frames[child], side), scale, depth, bits,
-                    from, to);
+      find_roots<I>(Patch::template edge<I>(nets[child], side), Patch::ends(frames[child], side), scale, per_scale,
+                    depth, bits, from, to);
       inner[e].end = static_cast<std::uint32_t>(pool_.size());
     }
     std::array<std::array<Side, 2>, Patch::kSides> halves{};
@@ -323,21 +343,20 @@ class BoxTracer {
           own[s] = halves[static_cast<std::size_t>(source.index)][static_cast<std::size_t>(source.half)];
         }
       }
-      visit(Box<I>{nets[c], frames[c], depth, scale, bits}, from, to, own);
+      visit(Box<I>{nets[c], frames[c], depth, scale, per_scale, bits}, from, to, own);
     }
     pool_.resize(mark);
   }
 
   /// Isolates the roots of a new edge and appends them to the pool.
   template <class I>
-  void find_roots(const EdgeNet<Patch::kDegree, I>& edge, const std::array<Vec2, 2>& ends, I scale, int depth, int bits,
-                  int from, int to) {
+  void find_roots(const EdgeNet<Patch::kDegree, I>& edge, const std::array<Vec2, 2>& ends, I scale, double per_scale,
+                  int depth, int bits, int from, int to) {
     const auto [low, high] = std::minmax_element(edge.begin(), edge.end());
-    from = std::max(from, levels_.at_most<I>(*low, scale));
-    to = std::min(to, levels_.at_most<I>(*high, scale));
+    narrow<I>(*low, *high, scale, per_scale, from, to);
     for (int k = from; k < to; ++k)
       isolate_roots<Patch::kDegree, I>(
-          edge, levels_.scaled<I>(k, scale), depth, bits,
+          edge, threshold<I>(k, scale), depth, bits,
           [&](double t) {
             pool_.push_back({k, trace_.add(ends[0] + t * (ends[1] - ends[0]), k)});
           },
@@ -362,7 +381,7 @@ class BoxTracer {
       const std::uint32_t n = last - i;
       std::uint32_t count = 0;
       isolate_roots<Patch::kDegree, I>(
-          edge, levels_.scaled<I>(k, scale), depth, bits, [&](double) { ++count; }, [](double, double) {});
+          edge, threshold<I>(k, scale), depth, bits, [&](double) { ++count; }, [](double, double) {});
       count = std::min(count, n);
       const std::uint32_t border = side.reversed ? last - count : i + count;
       for (std::uint32_t j = i; j < last; ++j)
@@ -383,6 +402,7 @@ class BoxTracer {
   double tolerance_;
   bool mirrored_;
   Trace& trace_;
+  std::int64_t base_ = 0;       ///< ordinates of the patch in hand are counted from here, in doubled quanta
   std::vector<EdgeRoot> pool_;  ///< the lists of the boxes on the way down, as a stack
   std::vector<EdgeRoot> first_, second_half_;
   std::vector<std::uint32_t> found_;

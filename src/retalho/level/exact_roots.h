@@ -1,5 +1,6 @@
 // Internal to level/: roots of integer Bernstein polynomials on an edge, isolated by exact halving
-// (docs/contours.md, "Numbers"). Doubles hold the integers while they have at most 53 bits, then 128-bit integers.
+// (docs/contours.md, "How"). Doubles hold the integers while they have at most 53 bits, then integers of 64 and 128
+// bits.
 //
 // A sign is b >= M, with M odd at the start and b even: no ordinate is ever on the level; after halving the same rule
 // is the level moved down by less than anything, on every edge and in every box alike.
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 namespace retalho {
@@ -16,6 +18,25 @@ __extension__ using Int128 = __int128;
 
 inline constexpr int kBoxDepth = 15;   ///< boxes are not halved below 2^-15 of a patch
 inline constexpr int kEdgeDepth = 17;  ///< nor edges below 2^-17, whatever box asks
+
+/// A type of exact integers: how many bits it holds without the sign (two are kept free for sums), and the next wider.
+template <class I>
+struct Exact;
+template <>
+struct Exact<double> {
+  static constexpr int kBits = 53;
+  using Wider = std::int64_t;
+};
+template <>
+struct Exact<std::int64_t> {
+  static constexpr int kBits = 60;
+  using Wider = Int128;
+};
+template <>
+struct Exact<Int128> {
+  static constexpr int kBits = 125;
+  using Wider = void;
+};
 
 template <int N, class I>
 using EdgeNet = std::array<I, static_cast<std::size_t>(N + 1)>;
@@ -89,11 +110,12 @@ void isolate_roots(const EdgeNet<N, I>& b, I level, int depth, int bits, const E
     if ((b[0] >= level) != (b[N] >= level)) emit(start + 0.5 * length);
     return;
   }
-  if constexpr (std::is_same_v<I, double>) {
-    if (bits + N > 53) {
-      EdgeNet<N, Int128> wide{};
-      for (std::size_t i = 0; i <= N; ++i) wide[i] = static_cast<Int128>(b[i]);
-      isolate_roots<N, Int128>(wide, static_cast<Int128>(level), depth, bits, emit, undecided, start, length);
+  if constexpr (!std::is_void_v<typename Exact<I>::Wider>) {
+    if (bits + N > Exact<I>::kBits) {
+      using Wider = typename Exact<I>::Wider;
+      EdgeNet<N, Wider> wide{};
+      for (std::size_t i = 0; i <= N; ++i) wide[i] = static_cast<Wider>(b[i]);
+      isolate_roots<N, Wider>(wide, static_cast<Wider>(level), depth, bits, emit, undecided, start, length);
       return;
     }
   }

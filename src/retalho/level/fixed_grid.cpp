@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retalho/core/parallel.h"
+#include "retalho/level/fixed_levels.h"
 
 namespace retalho {
 
@@ -25,9 +26,7 @@ FixedGrid fix_grid(const BicubicGrid& grid, const Context& context) {
     largest[from / kGrain] = m;
   });
   const double size = largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
-  int exponent = 0;
-  std::frexp(size, &exponent);  // size < 2^exponent; one bit more for rounding four numbers
-  f.per_unit = size > 0 ? std::ldexp(1.0, 27 - exponent) : 1;
+  f.per_unit = quanta_per_unit(size);
   f.z.resize(n);
   f.u.resize(n);
   f.v.resize(n);

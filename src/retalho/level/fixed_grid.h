@@ -18,10 +18,7 @@ struct FixedGrid {
   double cell_width = 1, cell_height = 1;
   double per_unit = 1;  ///< quanta a height unit, a power of two
   Mask valid;
-  std::vector<std::int32_t> z, u, v, t;  ///< height, zu / 3, zv / 3, zuv / 9; their magnitudes add up to less than 2^28
-
-  /// Bits of a doubled ordinate.
-  static constexpr int kBits = 29;
+  std::vector<std::int32_t> z, u, v, t;  ///< height, zu / 3, zv / 3, zuv / 9; their magnitudes add up to less than 2^24
 
   std::size_t node(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);

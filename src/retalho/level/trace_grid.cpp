@@ -99,10 +99,10 @@ class StripTracer {
                std::vector<EdgeRoot>& out) {
     const EdgeNet<3, double> e{2.0 * z0, 2.0 * (z0 + d0), 2.0 * (z1 - d1), 2.0 * z1};
     const auto [low, high] = std::minmax_element(e.begin(), e.end());
-    const int first = levels_.at_most(*low, 1.0), last = levels_.at_most(*high, 1.0);
+    const int first = levels_.at_most(*low), last = levels_.at_most(*high);
     for (int k = first; k < last; ++k)
       isolate_roots<3, double>(
-          e, levels_.threshold(k), 0, FixedGrid::kBits,
+          e, levels_.threshold(k), 0, kOrdinateBits,
           [&](double t) {
             out.push_back({k, strip_.trace.add(from + t * (to - from), k)});
           },
@@ -165,8 +165,8 @@ class StripTracer {
       const std::size_t c = candidates_[i];
       const int column = static_cast<int>(c);
       if (!grid_.has_patch(column, row)) continue;
-      if (levels_.at_most(2.0 * low_[c], 1.0) >= levels_.at_most(2.0 * high_[c], 1.0)) continue;
-      boxes_.trace_patch(grid_.net(column, row), grid_.frame(column, row), FixedGrid::kBits,
+      if (levels_.at_most(2.0 * low_[c]) >= levels_.at_most(2.0 * high_[c])) continue;
+      boxes_.trace_patch(grid_.net(column, row), grid_.frame(column, row),
                          {above_.of(column), beside_.of(column + 1), below_.of(column), beside_.of(column)},
                          {false, false, false, false});
     }

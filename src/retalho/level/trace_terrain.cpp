@@ -14,7 +14,6 @@ namespace retalho {
 namespace {
 
 constexpr std::size_t kGrain = 2048;  // triangles a chunk
-constexpr int kBits = 29;
 
 std::size_t chunk_count(std::size_t triangles) {
   return (triangles + kGrain - 1) / kGrain;
@@ -24,10 +23,10 @@ template <int N, class Add>
 void isolate_edge(const EdgeNet<N, double>& net, const std::array<Vec2, 2>& ends, const FixedLevels& levels,
                   Trace& trace, const Add& add) {
   const auto [low, high] = std::minmax_element(net.begin(), net.end());
-  const int first = levels.at_most(*low, 1.0), last = levels.at_most(*high, 1.0);
+  const int first = levels.at_most(*low), last = levels.at_most(*high);
   for (int k = first; k < last; ++k)
     isolate_roots<N, double>(
-        net, levels.threshold(k), 0, kBits,
+        net, levels.threshold(k), 0, kOrdinateBits,
         [&](double t) {
           add(EdgeRoot{k, trace.add(ends[0] + t * (ends[1] - ends[0]), k)});
         },
@@ -64,7 +63,7 @@ Trace trace_edges(const Terrain& terrain, const EdgeTable& edges, double per_uni
     EdgeChunk& chunk = chunks[from / kGrain];
     for (auto t = static_cast<std::uint32_t>(from); t < to; ++t) {
       const Pieces pieces(terrain, edges, t, per_unit);
-      if (levels.at_most(pieces.low, 1.0) >= levels.at_most(pieces.high, 1.0)) continue;
+      if (levels.at_most(pieces.low) >= levels.at_most(pieces.high)) continue;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t e = edges.of_triangle[t][static_cast<std::size_t>(k)];
         if (edges.triangles[e][0] != t) continue;
@@ -140,7 +139,7 @@ class ChunkTracer {
 
   void trace(std::uint32_t t, double per_unit) {
     const Pieces pieces(terrain_, edges_, t, per_unit);
-    if (levels_.at_most(pieces.low, 1.0) >= levels_.at_most(pieces.high, 1.0)) return;
+    if (levels_.at_most(pieces.low) >= levels_.at_most(pieces.high)) return;
     load_outer(t);
     for (std::size_t e = 0; e < Topology::kInner; ++e) {
       inner_[e].clear();
@@ -159,7 +158,7 @@ class ChunkTracer {
         lists[s] = side.outer ? outer_lists_[index][static_cast<std::size_t>(side.half)] : inner_[index];
         reversed[s] = side.outer ? !forward(terrain_, t, side.index) : side.reversed;
       }
-      boxes_.trace_patch(pieces.nets[p], pieces.frames[p], kBits, lists, reversed);
+      boxes_.trace_patch(pieces.nets[p], pieces.frames[p], lists, reversed);
     }
     chunk_.trace.cell.resize(chunk_.trace.points.size(), t);
   }
@@ -251,9 +250,7 @@ double terrain_quanta(const Terrain& terrain, const EdgeTable& edges, const Cont
   });
   double size = 0;
   for (const double m : largest) size = std::max(size, m);
-  int exponent = 0;
-  std::frexp(size, &exponent);
-  return size > 0 ? std::ldexp(1.0, 27 - exponent) : 1;
+  return quanta_per_unit(size);
 }
 
 Trace trace_terrain(const Terrain& terrain, const EdgeTable& edges, double per_unit, const FixedLevels& levels,
