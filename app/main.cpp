@@ -18,7 +18,7 @@ namespace {
 // A new command is one row here.
 constexpr void (*kCommands[])(CLI::App&, Program&) = {
     add_info,  add_fit,   add_compare, add_sample,   add_mesh,        add_render,
-    add_curve, add_patch, add_contour, add_viewshed, add_reconstruct,
+    add_curve, add_patch, add_contour, add_viewshed, add_reconstruct, add_view,
 };
 
 constexpr const char* kExamples =

@@ -64,5 +64,6 @@ void add_patch(CLI::App& root, Program& program);
 void add_viewshed(CLI::App& root, Program& program);
 void add_contour(CLI::App& root, Program& program);
 void add_reconstruct(CLI::App& root, Program& program);
+void add_view(CLI::App& root, Program& program);
 
 }  // namespace retalho::app

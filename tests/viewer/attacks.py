@@ -1,0 +1,469 @@
+#!/usr/bin/python3
+"""Attacks on the server of `retalho view`, one after the other, against the running program.
+
+  tests/viewer/attacks.py PROGRAM [--no-memory-limit]     (a sanitizer takes more memory than the limit)
+
+After each attack the page must still answer and a call with the token must still work; at the end the program must be
+alive, its largest memory under 100 MB, and it must end by SIGINT with code 0. The exit code is 1 if anything failed.
+"""
+import http.client
+import json
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+
+LIMIT_MB = 100
+attacks = []
+
+
+def attack(words):
+    def note(function):
+        attacks.append((words, function))
+        return function
+    return note
+
+
+class Server:
+    def __init__(self, program):
+        self.process = subprocess.Popen([program, "view", "--no-browser", "--json", "--quiet", "--threads", "2"],
+                                        stdout=subprocess.PIPE)
+        text = b""
+        while b"}" not in text:
+            line = self.process.stdout.readline()
+            if not line:
+                sys.exit(f"attacks: the program ended with code {self.process.wait()}")
+            text += line
+        address = json.loads(text)["address"]
+        self.port = int(address.split(":")[2].split("/")[0])
+        self.token = address.split("#token=")[1]
+        self.host = f"127.0.0.1:{self.port}"
+
+    def connect(self, timeout=5):
+        return socket.create_connection(("127.0.0.1", self.port), timeout)
+
+    def raw(self, data, timeout=5, read=True):
+        """Sends bytes; the status line's number, or 0 when the server only closed the connection."""
+        with self.connect(timeout) as s:
+            try:
+                s.sendall(data)
+                answer = b""
+                while read and b"\r\n" not in answer:
+                    more = s.recv(4096)
+                    if not more:
+                        break
+                    answer += more
+            except (ConnectionError, socket.timeout):
+                return 0
+        return int(answer.split()[1]) if answer.startswith(b"HTTP/1.") else 0
+
+    def request(self, method, path, headers=None, body=None, token=True, host=None, timeout=30):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
+        sent = {"Host": host or self.host, **(headers or {})}
+        if method == "POST":
+            sent.setdefault("Content-Type", "application/json")
+        if token:
+            sent.setdefault("X-Retalho-Token", self.token)
+        try:
+            connection.request(method, path, body=body, headers=sent)
+            response = connection.getresponse()
+            return response.status, response.read(), dict(response.getheaders())
+        finally:
+            connection.close()
+
+    def call(self, path, body, **more):
+        return self.request("POST", path, body=body if isinstance(body, (bytes, str)) else json.dumps(body), **more)
+
+    def fit(self, **more):
+        words = {"file": 0, "surface": "linear", "fit": "interpolate", "vertices": 50, "triangles": 5000, **more}
+        return self.call("/api/terrain/fit", words)
+
+    def memory_mb(self):
+        with open(f"/proc/{self.process.pid}/status") as status:
+            return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) / 1024
+
+    def answers(self):
+        """The page and a call, each within five seconds."""
+        begun = time.monotonic()
+        page, _, headers = self.request("GET", "/", token=False, timeout=5)
+        call, words, _ = self.call("/api/terrain/files", {}, timeout=5)
+        if page != 200 or call != 200 or b"Example" not in words:
+            return f"the page answers {page}, a call {call}"
+        if not headers.get("Content-Security-Policy", "").startswith("default-src 'self'"):
+            return "the page has no content security policy"
+        if time.monotonic() - begun > 5:
+            return "the page took over 5 s"
+        return None
+
+
+def refused(status, *codes):
+    return None if status in codes else f"answered {status}, not {' or '.join(map(str, codes))}"
+
+
+def get(server, path):
+    return server.raw(f"GET {path} HTTP/1.1\r\nHost: {server.host}\r\nX-Retalho-Token: {server.token}\r\n\r\n".encode())
+
+
+@attack("a path that climbs out: /../../etc/passwd")
+def _(s):
+    return refused(get(s, "/../../../../etc/passwd"), 404)
+
+
+@attack("the same, escaped: %2e%2e%2f")
+def _(s):
+    return refused(get(s, "/%2e%2e%2f%2e%2e%2fetc/passwd"), 404)
+
+
+@attack("the same, escaped twice, and with backslashes")
+def _(s):
+    return refused(get(s, "/%252e%252e/etc/passwd"), 404) or refused(get(s, "/..\\..\\etc\\passwd"), 404)
+
+
+@attack("an absolute path of a file that exists, and file://")
+def _(s):
+    return refused(get(s, "//etc/passwd"), 404) or refused(get(s, "file:///etc/passwd"), 404, 400, 0)
+
+
+@attack("a zero byte in the path")
+def _(s):
+    # libmicrohttpd cuts the address at the byte; what is left is a name of the page's table, or nothing.
+    return refused(get(s, "/%00index.html"), 404) or refused(get(s, "/etc/passwd\0/index.html"), 400, 404, 0)
+
+
+@attack("a path in a call's body, where a file's number belongs")
+def _(s):
+    return refused(s.call("/api/terrain/at", {"model": "/etc/passwd", "x": 0, "y": 0})[0], 400)
+
+
+@attack("a Host of another site (DNS rebinding)")
+def _(s):
+    return refused(s.request("GET", "/", host=f"evil.example:{s.port}")[0], 421)
+
+
+@attack("a Host without the port, and one with another port")
+def _(s):
+    return refused(s.request("GET", "/", host="127.0.0.1")[0], 421) or refused(
+        s.request("GET", "/", host=f"127.0.0.1:{s.port - 1}")[0], 421)
+
+
+@attack("no Host, and two of them")
+def _(s):
+    return refused(s.raw(b"GET / HTTP/1.1\r\n\r\n"), 400, 421, 0) or refused(
+        s.raw(f"GET / HTTP/1.1\r\nHost: {s.host}\r\nHost: evil.example\r\n\r\n".encode()), 400, 421, 0)
+
+
+@attack("a POST from another site, with the token")
+def _(s):
+    return refused(s.call("/api/terrain/files", {}, headers={"Origin": "https://evil.example"})[0], 403)
+
+
+@attack("a POST from another port of this machine, and from Origin null")
+def _(s):
+    return refused(s.call("/api/terrain/files", {}, headers={"Origin": f"http://127.0.0.1:{s.port + 1}"})[0],
+                   403) or refused(s.call("/api/terrain/files", {}, headers={"Origin": "null"})[0], 403)
+
+
+@attack("a cross-site request as the browser marks it")
+def _(s):
+    return refused(s.call("/api/terrain/files", {}, headers={"Sec-Fetch-Site": "cross-site"})[0], 403)
+
+
+@attack("a form of another site (a simple request: no preflight)")
+def _(s):
+    return refused(s.call("/api/terrain/files", "a=b", token=False,
+                          headers={"Content-Type": "text/plain"})[0], 403) or refused(
+        s.call("/api/terrain/files", "{}", headers={"Content-Type": "text/plain"})[0], 415)
+
+
+@attack("no token, a wrong one, a longer one")
+def _(s):
+    for token in ("", "A" * 32, s.token + "A", s.token[:-1]):
+        status = s.call("/api/terrain/files", {}, token=False, headers={"X-Retalho-Token": token})[0]
+        if status != 403:
+            return f"token {token!r}: answered {status}"
+    return refused(s.call("/api/terrain/files", {}, token=False)[0], 403)
+
+
+@attack("the token in the address instead of the header")
+def _(s):
+    return refused(s.call(f"/api/terrain/files?token={s.token}", {}, token=False)[0], 403)
+
+
+@attack("other methods: PUT, DELETE, TRACE, CONNECT, OPTIONS, and one of 8,000 letters")
+def _(s):
+    for method in ("PUT", "DELETE", "TRACE", "OPTIONS", "POST"):
+        if s.request(method, "/", body="{}" if method == "POST" else None)[0] != 405:
+            return f"{method} / was not refused"
+    if s.request("GET", "/api/terrain/files")[0] != 405:
+        return "GET of a call was not refused"
+    line = b"G" * 8000 + f" / HTTP/1.1\r\nHost: {s.host}\r\n\r\n".encode()
+    return refused(s.raw(line), 400, 405, 414, 431, 501, 0) or refused(
+        s.raw(f"CONNECT evil.example:80 HTTP/1.1\r\nHost: {s.host}\r\n\r\n".encode()), 400, 404, 405, 0)
+
+
+@attack("a body that claims 10 GB, and a length that is no number")
+def _(s):
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\n"
+    return refused(s.raw((head + "Content-Length: 10000000000\r\n\r\n{").encode()), 413, 400, 0) or refused(
+        s.raw((head + "Content-Length: -5\r\n\r\n").encode()), 400, 413, 0) or refused(
+        s.raw((head + "Content-Length: 99999999999999999999999\r\n\r\n").encode()), 400, 413, 0)
+
+
+@attack("a body of 50 MB that says so")
+def _(s):
+    try:
+        return refused(s.call("/api/terrain/files", b" " * 50_000_000)[0], 413)
+    except (ConnectionError, socket.timeout):
+        return None  # closed while it was still being sent
+
+
+@attack("a body of 200 MB in chunks")
+def _(s):
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+    chunk = b"10000\r\n" + b" " * 65536 + b"\r\n"
+    with s.connect() as c:
+        try:
+            c.sendall(head.encode())
+            for _ in range(3200):
+                c.sendall(chunk)
+        except (ConnectionError, socket.timeout):
+            return None
+    return "all of it was taken"
+
+
+@attack("chunks of broken sizes")
+def _(s):
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+    for size in ("zz", "-1", "ffffffffffffffffffff", "7fffffffffffffff"):
+        status = s.raw((head + size + "\r\n{}\r\n0\r\n\r\n").encode(), timeout=12)
+        if status not in (0, 400, 413):
+            return f"size {size}: answered {status}"
+    return None
+
+
+@attack("both a length and chunks (request smuggling)")
+def _(s):
+    body = f"0\r\n\r\nGET / HTTP/1.1\r\nHost: {s.host}\r\n\r\n"
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\nContent-Length: {len(body)}\r\n\r\n"
+    return refused(s.raw((head + body).encode()), 200, 400, 0)
+
+
+@attack("100,000 headers")
+def _(s):
+    return refused(s.raw(f"GET / HTTP/1.1\r\nHost: {s.host}\r\n".encode() +
+                         b"".join(b"X-%d: y\r\n" % k for k in range(100_000)) + b"\r\n"), 400, 413, 431, 0)
+
+
+@attack("one header of 10 MB, and an address of 1 MB")
+def _(s):
+    return refused(s.raw(f"GET / HTTP/1.1\r\nHost: {s.host}\r\nX: ".encode() + b"a" * 10_000_000 + b"\r\n\r\n"),
+                   400, 413, 431, 0) or refused(get(s, "/" + "a" * 1_000_000), 400, 404, 413, 414, 431, 0)
+
+
+@attack("500 connections that say nothing")
+def _(s):
+    held = []
+    try:
+        for _ in range(500):
+            try:
+                held.append(s.connect(1))
+            except OSError:
+                break
+        return s.answers()
+    finally:
+        for c in held:
+            c.close()
+
+
+@attack("200 connections that send one byte a second (slow headers)")
+def _(s):
+    held = []
+    try:
+        for _ in range(200):
+            c = s.connect(1)
+            c.sendall(f"GET / HTTP/1.1\r\nHost: {s.host}\r\nX: ".encode())
+            held.append(c)
+        for _ in range(4):
+            for c in held:
+                try:
+                    c.sendall(b"a")
+                except OSError:
+                    pass
+            problem = s.answers()
+            if problem:
+                return problem
+            time.sleep(1)
+    except OSError:
+        return s.answers()
+    finally:
+        for c in held:
+            c.close()
+
+
+@attack("a slow body with the token is cut off")
+def _(s):
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n"
+    with s.connect(30) as c:
+        c.sendall(head.encode())
+        begun = time.monotonic()
+        try:
+            while time.monotonic() - begun < 20:
+                c.sendall(b" ")
+                time.sleep(0.5)
+        except OSError:
+            return None
+    return "it was still taken after 20 s"
+
+
+@attack("connections that are reset while the server answers")
+def _(s):
+    for _ in range(100):
+        c = s.connect()
+        c.sendall(f"GET /page.js HTTP/1.1\r\nHost: {s.host}\r\n\r\n".encode())
+        c.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        c.close()
+    return None
+
+
+@attack("a client that asks for the page and never reads it")
+def _(s):
+    held = [s.connect() for _ in range(40)]
+    for c in held:
+        c.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
+        c.sendall(f"GET /page.js HTTP/1.1\r\nHost: {s.host}\r\n\r\n".encode() * 20)
+    problem = s.answers()
+    for c in held:
+        c.close()
+    return problem
+
+
+@attack("JSON that is none, or of the wrong kind, or not UTF-8")
+def _(s):
+    for body in (b"{", b"[]", b"null", b"\"x\"", b"{\"file\": }", b"\xff\xfe", b"\0\0\0\0", b"{\"a\":1}{\"b\":2}"):
+        status = s.call("/api/terrain/at", body)[0]
+        if status != 400:
+            return f"{body!r}: answered {status}"
+    return None
+
+
+@attack("JSON nested 300,000 deep")
+def _(s):
+    for body in (b"[" * 300_000, b"{\"a\":" * 150_000, b"[" * 300_000 + b"]" * 300_000):
+        status = s.call("/api/terrain/at", body)[0]
+        if status != 400:
+            return f"answered {status}"
+    return None
+
+
+@attack("numbers out of range: 1e999, NaN, -1, 2^63, a text")
+def _(s):
+    for file in ("1e999", "NaN", "-1", "9223372036854775807", "\"0\"", "0.5", "null", "[0]", "{}"):
+        status, words, _ = s.call("/api/terrain/fit", f"{{\"file\": {file}, \"surface\": \"linear\"}}")
+        if status != 400 and b"event: failed" not in words:
+            return f"file {file}: answered {status}, {words[:200]!r}"
+    return None
+
+
+@attack("work that would never end: a tolerance of 0 and an interval of 1e-9")
+def _(s):
+    status, words, _ = s.fit()
+    if status != 200 or b"event: done" not in words:
+        return f"the fit failed: {words[-300:]!r}"
+    model = json.loads(words.split(b"event: done\ndata: ")[1].split(b"\n")[0])["words"]["model"]
+    words = s.call("/api/terrain/contours", {"model": model, "interval": 1e-9})[1]
+    return None if b"event: failed" in words else f"answered {words[:200]!r}"
+
+
+@attack("another's answer: results that were never made, or fetched twice")
+def _(s):
+    words = s.fit(vertices=60)[1]
+    result = json.loads(words.split(b"event: done\ndata: ")[1].split(b"\n")[0])["result"]
+    first, second = (s.call("/api/result", {"id": result})[0] for _ in range(2))
+    return refused(first, 200) or refused(second, 400) or refused(s.call("/api/result", {"id": 999_999})[0], 400)
+
+
+@attack("300 calls at once")
+def _(s):
+    codes = []
+
+    def one():
+        try:
+            codes.append(s.fit(vertices=70 + len(codes) % 3)[0])
+        except (OSError, http.client.HTTPException):
+            codes.append(0)
+    threads = [threading.Thread(target=one) for _ in range(300)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    strange = [c for c in codes if c not in (0, 200, 503)]
+    return f"answered {strange[:5]}" if strange else None if 200 in codes else "none was answered"
+
+
+@attack("a tab that closes in the middle of its work ends it")
+def _(s):
+    words = json.dumps({"file": 0, "surface": "clough-tocher", "fit": "surface", "vertices": 20000,
+                        "triangles": 100000}).encode()
+    c = s.connect()
+    c.sendall(f"POST /api/terrain/fit HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: "
+              f"application/json\r\nContent-Length: {len(words)}\r\n\r\n".encode() + words)
+    c.recv(100)  # the first progress: it is in work
+    c.close()
+    begun = time.monotonic()
+    status, answer, _ = s.fit(vertices=80)  # waits for its turn behind the other
+    seconds = time.monotonic() - begun
+    if status != 200 or b"event: done" not in answer:
+        return f"the next call failed: {answer[-300:]!r}"
+    return None if seconds < 3 else f"the next call had to wait {seconds:.1f} s"
+
+
+def main():
+    server = Server(sys.argv[1])
+    failed = []
+    problem = server.answers()
+    if problem:
+        failed.append(f"before any attack: {problem}")
+    for number, (words, function) in enumerate(attacks, 1):
+        begun = time.monotonic()
+        try:
+            problem = function(server)
+        except Exception as error:  # an attack may end in any way; a test that dies has found something
+            problem = f"{type(error).__name__}: {error}"
+        try:
+            problem = problem or server.answers()
+        except Exception as error:
+            problem = problem or f"the page does not answer any more: {type(error).__name__}: {error}"
+        if server.process.poll() is not None:
+            failed.append(words)
+            print(f"{number:2} FAILED {words}: the program ended with code {server.process.returncode}")
+            break
+        if problem:
+            failed.append(words)
+        print(f"{number:2} {'FAILED' if problem else 'ok'} {words}" + (f": {problem}" if problem else "") +
+              f" ({time.monotonic() - begun:.1f} s, {server.memory_mb():.0f} MB)", flush=True)
+    if server.process.poll() is None:
+        memory = server.memory_mb()
+        if memory > LIMIT_MB and "--no-memory-limit" not in sys.argv:
+            failed.append(f"largest memory {memory:.0f} MB, over {LIMIT_MB} MB")
+        server.process.send_signal(signal.SIGINT)
+        try:
+            code = server.process.wait(10)
+            if code != 0:
+                failed.append(f"SIGINT ended it with code {code}")
+        except subprocess.TimeoutExpired:
+            server.process.kill()
+            failed.append("SIGINT did not end it within 10 s")
+        print(f"{len(attacks)} attacks, {len(failed)} failed, largest memory {memory:.1f} MB")
+    for words in failed:
+        print("FAILED", words)
+    if len(attacks) < 28:
+        sys.exit("attacks: fewer than 28")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,102 @@
+// Runs the program and a browser for the page's tests, as a person would: the printed address, Debian's chromium.
+import {execFileSync, spawn} from 'node:child_process';
+import {existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+
+const root = fileURLToPath(new URL('../../../', import.meta.url));
+const require = createRequire(join(root, 'viewer/web/package.json'));
+
+export const program = process.env.RETALHO_PROGRAM ?? join(root, 'build/release/retalho');
+export const pictures = process.env.RETALHO_PICTURES ?? join(root, 'build/page-pictures');
+export const SKIP = 77;  // what ctest takes for "skipped"
+
+export function findChromium() {
+  return ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
+}
+
+export function skip(words) {
+  console.log(`skipped: ${words}`);
+  process.exit(SKIP);
+}
+
+export function chromiumDriver() {
+  try {
+    return require('playwright-core').chromium;
+  } catch {
+    return skip('playwright-core is not installed (scripts/page installs it)');
+  }
+}
+
+/** The program's own answer, as JSON. */
+export function retalho(...args) {
+  return JSON.parse(execFileSync(program, [...args, '--json', '--quiet'], {encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit']}));
+}
+
+/** Smooth hills of integer heights on an ASCII grid, cells of 10 with the lower left corner at (1000, 2000). */
+export function writeHills(path, columns, rows) {
+  let text = `ncols ${columns}\nnrows ${rows}\nxllcorner 1000\nyllcorner 2000\ncellsize 10\n`;
+  for (let r = 0; r < rows; ++r) {
+    text += Array.from({length: columns}, (_, c) => Math.round(400 + 90 * Math.sin(c * 0.07) * Math.cos(r * 0.05) + 55 * Math.sin(c * 0.021 + r * 0.033) - 80 * Math.exp(-(((r - 0.4 * c - 30) / 7) ** 2)))).join(' ') + '\n';
+  }
+  writeFileSync(path, text);
+}
+
+export class View {
+  static async open(args) {
+    const view = new View();
+    view.folder = mkdtempSync(join(tmpdir(), 'retalho-page-'));
+    mkdirSync(pictures, {recursive: true});
+    view.server = spawn(program, ['view', '--no-browser', '--json', '--quiet', ...args], {stdio: ['ignore', 'pipe', 'inherit']});
+    view.address = await new Promise((resolve, reject) => {
+      let text = '';
+      view.server.stdout.on('data', (data) => {
+        text += data;
+        if (text.includes('}')) resolve(JSON.parse(text).address);
+      });
+      view.server.on('exit', (code) => reject(new Error(`the program ended with code ${code}`)));
+    });
+    // A profile of its own in a folder of its own: nothing is shared with the user's browser.
+    view.context = await chromiumDriver().launchPersistentContext(join(view.folder, 'profile'), {
+      executablePath: findChromium(),
+      headless: true,
+      viewport: {width: 1280, height: 800},
+      args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'],
+    });
+    view.page = view.context.pages()[0] ?? await view.context.newPage();
+    view.problems = [];
+    view.requests = [];
+    view.page.on('console', (message) => { if (message.type() === 'error') view.problems.push(message.text()); });
+    view.page.on('pageerror', (error) => view.problems.push(String(error)));
+    view.page.on('request', (request) => view.requests.push(request.url()));
+    return view;
+  }
+
+  async go() {
+    await this.page.goto(this.address);
+    await this.quiet();
+  }
+
+  /** Waits until nothing runs and the picture has been drawn. */
+  async quiet() {
+    // By selector: the page's security policy forbids the evaluation of strings that waitForFunction needs.
+    await this.page.waitForSelector('.status[data-busy="false"]', {timeout: 60_000});
+    await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  }
+
+  async picture(name) {
+    await this.page.screenshot({path: join(pictures, `${name}.png`)});
+  }
+
+  async close() {
+    await this.context?.close();
+    this.server.removeAllListeners('exit');
+    const ended = new Promise((resolve) => this.server.on('exit', resolve));
+    this.server.kill('SIGINT');
+    const code = await ended;
+    rmSync(this.folder, {recursive: true, force: true});
+    return code;
+  }
+}

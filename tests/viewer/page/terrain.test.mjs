@@ -1,0 +1,174 @@
+// The terrain view against the program's own answers on the same grid.
+import assert from 'node:assert/strict';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {retalho, View, writeHills} from './support.mjs';
+
+const MODEL = ['--surface', 'clough-tocher', '--fit', 'interpolate', '--max-error', '5'];
+
+/** The numbers of a list of names and values (dt, dd) below `selector`. */
+async function numbers(page, selector) {
+  return page.$eval(selector, (box) => Object.fromEntries([...box.querySelectorAll('dt')].map((dt) => [dt.textContent, parseFloat(dt.nextElementSibling.textContent.replace('−', '-'))])));
+}
+
+function near(a, b, relative, words) {
+  assert.ok(Math.abs(a - b) <= relative * Math.max(1, Math.abs(b)), `${words}: the page says ${a}, the program ${b}`);
+}
+
+async function withGrid(run) {
+  const folder = mkdtempSync(join(tmpdir(), 'retalho-terrain-'));
+  const dem = join(folder, 'hills.asc'), model = join(folder, 'hills.retalho');
+  writeHills(dem, 160, 120);
+  const report = retalho('fit', dem, '-o', model, ...MODEL);
+  const view = await View.open([dem]);
+  try {
+    await view.go();
+    await run({view, page: view.page, dem, model, report, folder});
+    assert.deepEqual(view.problems, [], 'the browser reports no error');
+    const elsewhere = view.requests.filter((url) => !/^(http:\/\/127\.0\.0\.1:\d+\/|blob:)/.test(url));
+    assert.deepEqual(elsewhere, [], 'no request leaves the machine');
+  } finally {
+    assert.equal(await view.close(), 0, 'Ctrl-C ends the program with code 0');
+    rmSync(folder, {recursive: true});
+  }
+}
+
+async function tool(view, name) {
+  await view.page.locator('.tools').getByRole('button', {name}).click();
+}
+
+export const tests = [
+  ['the surface, its report and its errors are the program’s', () => withGrid(async ({view, page, report}) => {
+    await page.getByLabel('Tolerance', {exact: true}).first().waitFor();
+    await page.locator('input[type=number][aria-label="Tolerance"]').fill('5');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    const shown = await numbers(page, '.overlay');
+    near(shown.vertices, report.vertices, 0, 'vertices');
+    near(shown.coefficients, report.coefficients, 0, 'coefficients');
+    near(shown.RMSE, report.rmse, 1e-3, 'RMSE');
+    near(shown['largest error'], report.max_error, 1e-3, 'largest error');
+    near(shown['slope RMSE'], report.slope_rmse, 5e-3, 'slope RMSE');
+    await view.picture('terrain-relief');
+    await page.getByLabel('Colour').selectOption('error');
+    await view.quiet();
+    const top = await page.$eval('.legend .ticks span:last-child', (span) => parseFloat(span.textContent));
+    near(top, report.max_error, 1e-3, 'the end of the errors’ legend');
+    await view.picture('terrain-error');
+  })],
+
+  ['a click says height, slope and coordinates as `retalho sample` does', () => withGrid(async ({view, page, model}) => {
+    await page.locator('input[type=number][aria-label="Tolerance"]').fill('5');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    await tool(view, 'Ask');
+    for (const [x, y] of [[700, 420], [860, 520], [640, 600]]) {
+      await page.mouse.click(x, y);
+      await view.quiet();
+      const said = await numbers(page, '.readout');
+      const [point] = retalho('sample', model, '--at', `${said.X},${said.Y}`, '--what', 'height', '--what', 'slope').points;
+      near(said.height, point.z, 2e-5, 'height');
+      near(said.slope, point.slope, 1e-3, 'slope');
+    }
+    // The same place by its numbers, from the keyboard.
+    await page.getByLabel('X in the CRS').fill('1503.25');
+    await page.getByLabel('Y in the CRS').fill('2604.5');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    const said = await numbers(page, '.readout');
+    near(said.X, 1503.25, 1e-9, 'X');
+    const [point] = retalho('sample', model, '--at', '1503.25,2604.5', '--what', 'height', '--what', 'slope').points;
+    near(said.height, point.z, 1e-7, 'height');
+    near(said.slope, point.slope, 1e-5, 'slope');
+  })],
+
+  ['contours, profile and viewshed', () => withGrid(async ({view, page, dem, model, folder}) => {
+    await page.locator('input[type=number][aria-label="Tolerance"]').fill('5');
+    await page.keyboard.press('Enter');
+    await page.locator('input[type=number][aria-label^="Interval"]').fill('25');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    const lines = retalho('contour', model, '-o', join(folder, 'lines.geojson'), '--interval', '25');
+    const words = await page.$eval('.overlay', (box) => box.textContent);
+    assert.match(words, new RegExp(`${lines.lines} lines on `));
+    await page.getByLabel('Triangles', {exact: true}).check();
+    await view.quiet();
+    await view.picture('terrain-contours');
+
+    await tool(view, 'Profile');
+    await page.mouse.click(620, 470);
+    await page.mouse.click(900, 560);
+    await view.quiet();
+    assert.equal(await page.locator('.chart .series').count(), 2, 'the surface and the grid');
+
+    await tool(view, 'Viewshed');
+    await page.mouse.click(760, 470);
+    await view.quiet();
+    const seen = Number(/(\d+) of (\d+) cells are seen/.exec(await page.$eval('.seen', (p) => p.textContent))[1]);
+    await tool(view, 'Ask');
+    await page.mouse.click(760, 470);
+    await view.quiet();
+    const at = await numbers(page, '.readout');
+    const answer = retalho('viewshed', dem, '-o', join(folder, 'seen.tif'), '--observer', `${at.X},${at.Y}`, '--observer-height', '2');
+    assert.equal(seen, answer.visible_cells);
+    await view.picture('terrain-viewshed');
+  })],
+
+  ['three surfaces side by side; undo, redo, the link and a saved view bring them back', () => withGrid(async ({view, page, folder}) => {
+    await page.getByLabel('Side by side').selectOption('3');
+    await view.quiet();
+    assert.equal(await page.locator('.overlay').count(), 3);
+    const [flat, paper, ours] = await page.$$eval('.overlay', (boxes) => boxes.map((box) => box.querySelector('p').textContent));
+    assert.notEqual(paper, ours);
+    assert.equal(flat, paper);
+    await view.picture('terrain-three');
+    await page.getByLabel('Vertical exaggeration of the picture').first().fill('500');
+    await page.keyboard.press('Control+z');
+    await page.keyboard.press('Control+z');
+    await view.quiet();
+    assert.equal(await page.locator('.overlay').count(), 1);
+    await page.keyboard.press('Control+Shift+z');
+    await view.quiet();
+    assert.equal(await page.locator('.overlay').count(), 3);
+
+    const saving = page.waitForEvent('download');
+    await page.getByRole('button', {name: 'Save view'}).click();
+    const file = join(folder, 'view.json');
+    await (await saving).saveAs(file);
+    assert.equal(JSON.parse(readFileSync(file, 'utf8')).terrain.panels.length, 3);
+    await page.getByLabel('Side by side').selectOption('1');
+    await view.quiet();
+    await page.locator('input[type=file]').setInputFiles(file);
+    await view.quiet();
+    assert.equal(await page.locator('.overlay').count(), 3);
+
+    await page.getByRole('button', {name: 'Link'}).click();
+    assert.ok(!page.url().includes('token'), 'the token is not in the address');
+    await page.reload();
+    await view.quiet();
+    assert.equal(await page.locator('.overlay').count(), 3);
+    await page.getByRole('button', {name: /^Theme/}).click();
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
+    await view.quiet();
+    await view.picture('terrain-dark');
+  })],
+
+  ['what is wrong is said in words', () => withGrid(async ({view, page}) => {
+    await page.getByLabel('Fineness by').selectOption('vertices');
+    await page.getByLabel('Fit').selectOption('surface');
+    await page.locator('input[type=number][aria-label="Vertices"]').fill('300');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    const address = page.url();
+    view.server.removeAllListeners('exit');
+    await page.goto('about:blank');
+    await page.evaluate(() => undefined);
+    await page.goto(address);
+    await view.quiet();
+    await page.evaluate(() => sessionStorage.clear());
+    await page.reload();
+    await page.waitForSelector('main.failure[role=alert]');
+    assert.match(await page.textContent('main.failure'), /token/);
+  })],
+];

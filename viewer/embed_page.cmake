@@ -1,0 +1,37 @@
+# Writes a C++ source with the page's files (gzip bytes) in it, for page.h.
+#   cmake -DFOLDER=build/web -DOUTPUT=page_files.cpp -P embed_page.cmake
+# FOLDER holds files NAME.gz as viewer/web/pack.mjs leaves them; a missing or empty one gives a program without the page.
+set(type_html "text/html; charset=utf-8")
+set(type_js "text/javascript; charset=utf-8")
+set(type_css "text/css; charset=utf-8")
+set(type_svg "image/svg+xml")
+
+file(GLOB_RECURSE files RELATIVE "${FOLDER}" "${FOLDER}/*.gz")
+list(SORT files)
+set(arrays "")
+set(rows "")
+set(number 0)
+foreach(file IN LISTS files)
+  string(REGEX REPLACE "\\.gz$" "" name "${file}")
+  string(REGEX REPLACE "^.*\\." "" ending "${name}")
+  if(NOT DEFINED type_${ending})
+    message(FATAL_ERROR "embed_page.cmake: say the content type of ${name}")
+  endif()
+  file(READ "${FOLDER}/${file}" hex HEX)
+  string(LENGTH "${hex}" digits)
+  math(EXPR bytes "${digits} / 2")
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," hex "${hex}")
+  string(APPEND arrays "const unsigned char kFile${number}[] = {${hex}};\n")
+  string(APPEND rows "    {\"/${name}\", \"${type_${ending}}\", {reinterpret_cast<const char*>(kFile${number}), ${bytes}}},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+
+set(source "// Made by viewer/embed_page.cmake.\n#include \"page.h\"\n\nnamespace retalho::viewer {\n")
+if(number GREATER 0)
+  string(APPEND source "namespace {\n${arrays}const PageFile kFiles[] = {\n${rows}};\n}  // namespace\n"
+    "std::span<const PageFile> page_files() {\n  return kFiles;\n}\n")
+else()
+  string(APPEND source "std::span<const PageFile> page_files() {\n  return {};\n}\n")
+endif()
+string(APPEND source "}  // namespace retalho::viewer\n")
+file(WRITE "${OUTPUT}" "${source}")

@@ -1,0 +1,40 @@
+// What was given on the command line, read before the page opens: a wrong file is the program's error, with its exit
+// code, and not a surprise in the browser. The page knows files by their number alone.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calls.h"
+#include "retalho/raster/raster.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho::viewer {
+
+/// A terrain to look at: a grid, or a model, or both.
+struct TerrainInput {
+  std::string name;                      ///< the file's name without its folder, or what the example is
+  std::string described;                 ///< one line
+  std::shared_ptr<const Raster> grid;    ///< null for a model
+  std::shared_ptr<const Terrain> model;  ///< null for a grid
+};
+
+/// A document for the page's editors, as the program writes and reads it.
+struct DocumentInput {
+  std::string name, kind;  ///< "curves" or "patches"
+  Json document;
+};
+
+struct InputFiles {
+  std::vector<TerrainInput> terrains;
+  std::vector<DocumentInput> documents;
+};
+
+/// Reads `paths`; with none, the terrain is an example made by formula. Throws as the readers do, and BadInput for a
+/// file of a kind that the page cannot show.
+InputFiles read_inputs(const std::vector<std::string>& paths, const Context& context);
+
+}  // namespace retalho::viewer

@@ -1,0 +1,52 @@
+// The terrain models that the page is looking at: fitted once for each set of options, the last few kept.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "calls.h"
+#include "input_files.h"
+#include "retalho/terrain/evaluate.h"
+#include "retalho/terrain/report.h"
+
+namespace retalho::viewer {
+
+struct FittedModel {
+  std::string id;  ///< says which file and which options: the same ones, the same id
+  std::size_t file = 0;
+  std::shared_ptr<const Raster> grid;  ///< what it is compared with; null for a model file
+  std::shared_ptr<const Terrain> terrain;
+  std::unique_ptr<TerrainEvaluator> evaluator;
+  std::optional<ErrorReport> errors;
+  double seconds = 0;
+};
+using ModelPointer = std::shared_ptr<const FittedModel>;
+
+class Models {
+ public:
+  explicit Models(std::vector<TerrainInput> inputs) : inputs_(std::move(inputs)) {}
+
+  const std::vector<TerrainInput>& inputs() const { return inputs_; }
+  /// {"file", "surface", "fit", "max_error" or "vertices"} to a model; a model file is taken as it is.
+  /// `fit`: "interpolate", "least-squares", "z-only" or "surface" (refined by the surface's own error).
+  ModelPointer fit(const Json& input, const Context& context);
+  /// The model that {"model": id} names. Throws BadInput when it is no longer kept.
+  ModelPointer get(const Json& input) const;
+  /// The heights that a viewshed is computed on: the file's grid, or the model at the cells that it was made from.
+  std::shared_ptr<const Raster> grid_of(const FittedModel& model, const Context& context);
+
+ private:
+  ModelPointer find(const std::string& id) const;
+
+  std::vector<TerrainInput> inputs_;
+  mutable std::mutex mutex_;
+  std::deque<ModelPointer> kept_;
+};
+
+/// The keys that `retalho fit --json` prints, as far as they are known without a file.
+Json report_json(const FittedModel& model);
+
+}  // namespace retalho::viewer

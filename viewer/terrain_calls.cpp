@@ -1,0 +1,358 @@
+#include "terrain_calls.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "models.h"
+#include "retalho/core/error.h"
+#include "retalho/level/contour.h"
+#include "retalho/mesh/terrain_mesh.h"
+#include "retalho/terrain/quantities.h"
+#include "retalho/visibility/viewshed.h"
+
+namespace retalho::viewer {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFar = 1e12;  // no coordinate of a terrain lies farther out
+constexpr std::size_t kMostContourPoints = 4'000'000;
+
+Json number_or_null(double v) {
+  return std::isfinite(v) ? Json(v) : Json(nullptr);
+}
+
+/// The first quoted word of the WKT; empty without a CRS.
+std::string crs_name(const std::string& wkt) {
+  const std::size_t open = wkt.find('"');
+  const std::size_t close = open == std::string::npos ? open : wkt.find('"', open + 1);
+  return close == std::string::npos ? std::string() : wkt.substr(open + 1, close - open - 1);
+}
+
+struct HeightRange {
+  double low, high;
+};
+HeightRange heights_of(const Terrain& terrain) {
+  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
+  return {*low, *high};
+}
+
+/// What the page takes from every coordinate, so that its floats keep their digits: the middle of the file's box. It
+/// depends on the file alone: all panels share it.
+Vec3 origin_of(const Models& models, std::size_t file) {
+  const TerrainInput& input = models.inputs()[file];
+  if (input.grid) {
+    const Raster& g = *input.grid;
+    const Vec2 middle = g.centre((g.columns - 1) / 2.0, (g.rows - 1) / 2.0);
+    return {middle.x, middle.y, 0};
+  }
+  Vec2 low = input.model->tin.points.at(0), high = low;
+  for (const Vec2 p : input.model->tin.points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return {(low.x + high.x) / 2, (low.y + high.y) / 2, 0};
+}
+
+void push(std::vector<float>& to, Vec3 p, Vec3 origin) {
+  to.push_back(static_cast<float>(p.x - origin.x));
+  to.push_back(static_cast<float>(p.y - origin.y));
+  to.push_back(static_cast<float>(p.z - origin.z));
+}
+
+/// The triangulation's edges along the surface: a straight one for flat pieces, four pieces where it is curved.
+std::vector<float> edge_lines(const FittedModel& model, Vec3 origin) {
+  const Tin& tin = model.terrain->tin;
+  const EdgeTable& edges = model.evaluator->edges();
+  const int pieces = model.terrain->kind == SurfaceKind::linear || edges.vertices.size() > 150'000 ? 1 : 4;
+  std::vector<float> lines;
+  lines.reserve(edges.vertices.size() * static_cast<std::size_t>(6 * pieces));
+  for (std::size_t e = 0; e < edges.vertices.size(); ++e) {
+    const auto [a, b] = edges.vertices[e];
+    Vec3 from{tin.points[a].x, tin.points[a].y, tin.heights[a]};
+    for (int k = 1; k <= pieces; ++k) {
+      const Vec2 at = tin.points[a] + (static_cast<double>(k) / pieces) * (tin.points[b] - tin.points[a]);
+      const double z = k == pieces ? tin.heights[b] : model.evaluator->jet_in(edges.triangles[e][0], at).value;
+      const Vec3 to{at.x, at.y, z};
+      push(lines, from, origin);
+      push(lines, to, origin);
+      from = to;
+    }
+  }
+  return lines;
+}
+
+Answer files_call(const Models& models) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < models.inputs().size(); ++i) {
+    const TerrainInput& input = models.inputs()[i];
+    const Georef& georef = input.grid ? input.grid->georef : input.model->georef;
+    Json one = {{"name", input.name},  {"described", input.described},    {"kind", input.grid ? "grid" : "model"},
+                {"unit", georef.unit}, {"geographic", georef.geographic}, {"crs", crs_name(georef.crs_wkt)}};
+    if (input.grid) {
+      const RasterSummary summary = summarize(*input.grid);
+      one["columns"] = input.grid->columns;
+      one["rows"] = input.grid->rows;
+      one["cell"] = std::min(input.grid->cell_width, input.grid->cell_height);
+      one["low"] = number_or_null(summary.minimum);
+      one["high"] = number_or_null(summary.maximum);
+      one["valid"] = summary.valid;
+    } else {
+      const HeightRange range = heights_of(*input.model);
+      one["low"] = range.low;
+      one["high"] = range.high;
+      one["cell"] =
+          input.model->grid.columns > 0 ? std::min(input.model->grid.cell_width, input.model->grid.cell_height) : 1.0;
+    }
+    list.push_back(one);
+  }
+  return {{{"files", list}}};
+}
+
+/// Fits, and gives the surface as triangles: as fine as the page's budget of triangles lets it be.
+Answer fit_call(Models& models, const Json& input, const Context& context) {
+  const ModelPointer model = models.fit(input, context);
+  const auto budget = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
+  const Terrain& terrain = *model->terrain;
+  const HeightRange range = heights_of(terrain);
+  double tolerance = mesh_tolerance(terrain, {.tolerance = std::max(1e-9, (range.high - range.low) / 2000)});
+  TriangleMesh mesh;
+  for (int tries = 0; tries < 8; ++tries) {
+    context.check();
+    mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
+    if (mesh.triangles.size() <= std::max(budget, terrain.tin.triangle_count())) break;
+    tolerance *= 3;
+  }
+  const Vec3 origin = origin_of(models, model->file);
+  std::vector<float> positions, normals;
+  positions.reserve(mesh.positions.size() * 3);
+  for (const Vec3 p : mesh.positions) push(positions, p, origin);
+  for (const Vec3 n : mesh.normals) push(normals, n, {});
+  std::vector<std::uint32_t> indices;
+  indices.reserve(mesh.triangles.size() * 3);
+  for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  Json words = report_json(*model);
+  words["model"] = model->id;
+  words["mesh_tolerance"] = tolerance;
+  words["mesh_triangles"] = mesh.triangles.size();
+  words["origin"] = {origin.x, origin.y};
+  words["range"] = {range.low, range.high};
+  return {words,
+          {make_array("position", positions), make_array("normal", normals), make_array("index", indices),
+           make_array("edges", edge_lines(*model, origin))}};
+}
+
+/// Signed error (model less grid) of each block of cells: the one of the largest size in it.
+Answer errors_call(const Models& models, const Json& input, const Context& context) {
+  const ModelPointer model = models.get(input);
+  if (!model->grid) throw BadInput("a model file has no grid beside it: open the DEM to see errors");
+  const Raster& grid = *model->grid;
+  const auto most = static_cast<int>(whole(input, "size", 16, 4096));
+  const int block = (std::max(grid.columns, grid.rows) + most - 1) / most;
+  const int columns = (grid.columns + block - 1) / block, rows = (grid.rows + block - 1) / block;
+  std::vector<float> error(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+                           std::numeric_limits<float>::quiet_NaN());
+  std::vector<double> heights(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(block));
+  for (int r = 0; r < rows; ++r) {
+    context.check();
+    const int first = r * block, count = std::min(block, grid.rows - first);
+    const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(count);
+    model->evaluator->grid_values(grid.centre(0, first), {grid.cell_width, grid.cell_height}, grid.columns, count,
+                                  std::span(heights).first(cells), {}, context);
+    for (std::size_t i = 0; i < cells; ++i) {
+      const double e = heights[i] - grid.at(grid.index(0, first) + i);
+      const auto column = static_cast<int>(i % static_cast<std::size_t>(grid.columns));
+      float& kept = error[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +
+                          static_cast<std::size_t>(column / block)];
+      if (!std::isnan(e) && !(std::abs(e) <= static_cast<double>(std::abs(kept)))) kept = static_cast<float>(e);
+    }
+    context.report("errors", static_cast<double>(r + 1) / rows);
+  }
+  // The picture's box: outer edges of the first and the last block, less the page's origin.
+  const Vec3 origin = origin_of(models, model->file);
+  const double west = -0.5 * grid.cell_width - origin.x, north = 0.5 * grid.cell_height - origin.y;
+  return {{{"columns", columns},
+           {"rows", rows},
+           {"block", block},
+           {"box", {west, north, columns * block * grid.cell_width, rows * block * grid.cell_height}}},
+          {make_array("error", error)}};
+}
+
+Answer contours_call(const Models& models, const Json& input, const Context& context) {
+  const ModelPointer model = models.get(input);
+  const Terrain& terrain = *model->terrain;
+  const double interval = number(input, "interval", 1e-9, 1e9), base = number_or(input, "base", -1e9, 1e9, 0);
+  const HeightRange range = heights_of(terrain);
+  const double beyond = 0.25 * (range.high - range.low);  // a smooth surface may rise above its vertices
+  std::vector<double> levels = contour_levels(range.low - beyond, range.high + beyond, interval, base);
+  if (levels.size() > 2000)
+    throw BadInput(fmt::format("an interval of {:.6g} makes {} levels: choose a larger one", interval, levels.size()),
+                   {}, "interval");
+  const double cell = terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height)
+                                               : norm(terrain.tin.points.at(0) - terrain.tin.points.at(1));
+  const ContourSet set = trace_contours(terrain, std::move(levels), {.tolerance = 0.1 * cell}, context);
+  if (set.points.size() > kMostContourPoints)
+    throw BadInput("these contours have too many points to draw: choose a larger interval", {}, "interval");
+  const Vec3 origin = origin_of(models, model->file);
+  std::vector<float> segments;
+  std::vector<std::uint8_t> major;
+  std::size_t closed = 0;
+  for (const ContourLine& line : set.lines) {
+    closed += line.closed ? 1 : 0;
+    const double z = set.levels[static_cast<std::size_t>(line.level)];
+    const bool index = std::abs(std::remainder((z - base) / interval, 5)) < 0.25;
+    const std::size_t n = line.end - line.begin, pieces = line.closed ? n : n - 1;
+    for (std::size_t k = 0; k < pieces; ++k)
+      for (const std::size_t at : {line.begin + k, line.begin + (k + 1) % n}) {
+        push(segments, {set.points[at].x, set.points[at].y, z}, origin);
+        major.push_back(index ? 255 : 0);
+      }
+  }
+  return {{{"levels", set.levels.size()},
+           {"lines", set.lines.size()},
+           {"closed_lines", closed},
+           {"vertices", set.points.size()},
+           {"singular", set.singular.size()},
+           {"tolerance", set.tolerance}},
+          {make_array("segments", segments), make_array("major", major)}};
+}
+
+Vec2 local_point(const Models& models, const FittedModel& model, const Json& input) {
+  const Vec3 origin = origin_of(models, model.file);
+  return {number(input, "x", -kFar, kFar) + origin.x, number(input, "y", -kFar, kFar) + origin.y};
+}
+
+/// Between cell centres as the grid is drawn elsewhere (bilinear); void where one of the four cells is.
+double between_cells(const Raster& grid, Vec2 local) {
+  const double column = local.x / grid.cell_width, row = -local.y / grid.cell_height;
+  if (!(column >= 0 && row >= 0 && column <= grid.columns - 1 && row <= grid.rows - 1)) return kNan;
+  const int c = std::min(static_cast<int>(column), grid.columns - 2),
+            r = std::min(static_cast<int>(row), grid.rows - 2);
+  if (c < 0 || r < 0) return kNan;
+  const double u = column - c, v = row - r;
+  return (1 - v) * ((1 - u) * grid.at(c, r) + u * grid.at(c + 1, r)) +
+         v * ((1 - u) * grid.at(c, r + 1) + u * grid.at(c + 1, r + 1));
+}
+
+/// The cell whose centre is nearest.
+double grid_height(const Raster& grid, Vec2 local) {
+  const double column = std::round(local.x / grid.cell_width), row = std::round(-local.y / grid.cell_height);
+  if (!(column >= 0 && row >= 0 && column < grid.columns && row < grid.rows)) return kNan;
+  return grid.at(static_cast<int>(column), static_cast<int>(row));
+}
+
+Answer at_call(const Models& models, const Json& input) {
+  const ModelPointer model = models.get(input);
+  const Georef& georef = model->terrain->georef;
+  const Vec3 origin = origin_of(models, model->file);
+  const Vec2 local = input.contains("crs_x")
+                         ? georef.to_local({number(input, "crs_x", -kFar, kFar), number(input, "crs_y", -kFar, kFar)})
+                         : local_point(models, *model, input);
+  const Vec2 crs = georef.to_crs(local);
+  const std::optional<Jet> jet = model->evaluator->jet(local);
+  Json words = {{"x", crs.x},
+                {"y", crs.y},
+                {"valid", jet.has_value()},
+                {"local_x", local.x - origin.x},
+                {"local_y", local.y - origin.y}};
+  if (jet) {
+    words["z"] = jet->value;
+    words["slope"] = slope_degrees(jet->gradient);
+    words["aspect"] = number_or_null(aspect_degrees(jet->gradient));
+    words["curvature"] = mean_curvature(*jet);
+  }
+  if (model->grid) words["grid"] = number_or_null(grid_height(*model->grid, local));
+  return {words};
+}
+
+/// Heights along a drawn line, for each model named, and the grid's own cells.
+Answer profile_call(const Models& models, const Json& input) {
+  const auto at = input.find("points");
+  if (at == input.end() || !at->is_array() || at->size() < 2 || at->size() > 200)
+    throw BadInput("'points' must be 2 to 200 places {x, y}", {}, "points");
+  const ModelPointer model = models.get(input);
+  std::vector<Vec2> corners;
+  double length = 0;
+  for (const Json& p : *at) {
+    if (!p.is_object()) throw BadInput("'points' must be 2 to 200 places {x, y}", {}, "points");
+    corners.push_back(local_point(models, *model, p));
+    if (corners.size() > 1) length += norm(corners.back() - corners[corners.size() - 2]);
+  }
+  const auto count = static_cast<std::size_t>(whole(input, "count", 2, 5000));
+  std::vector<double> distance, surface, grid;
+  std::size_t piece = 0;
+  double before = 0;  // length of the pieces that lie behind
+  for (std::size_t k = 0; k < count; ++k) {
+    const double d = length * static_cast<double>(k) / static_cast<double>(count - 1);
+    while (piece + 2 < corners.size() && d > before + norm(corners[piece + 1] - corners[piece])) {
+      before += norm(corners[piece + 1] - corners[piece]);
+      ++piece;
+    }
+    const Vec2 step = corners[piece + 1] - corners[piece];
+    const double along = norm(step) > 0 ? std::clamp((d - before) / norm(step), 0.0, 1.0) : 0.0;
+    const Vec2 p = corners[piece] + along * step;
+    distance.push_back(d);
+    surface.push_back(model->evaluator->value(p));
+    grid.push_back(model->grid ? between_cells(*model->grid, p) : kNan);
+  }
+  return {{{"length", length}, {"unit", model->terrain->georef.unit}},
+          {make_array("distance", distance), make_array("surface", surface), make_array("grid", grid)}};
+}
+
+Answer viewshed_call(Models& models, const Json& input, const Context& context) {
+  const ModelPointer model = models.get(input);
+  const std::shared_ptr<const Raster> grid = models.grid_of(*model, context);
+  const Vec2 crs = grid->georef.to_crs(local_point(models, *model, input));
+  const Observer observer = observer_at(*grid, crs, number(input, "height", 0, 1e5));
+  ViewshedOptions options;
+  options.radius = number_or(input, "radius", 0, kFar, 0);
+  options.target_height = number_or(input, "target_height", 0, 1e5, 0);
+  const std::vector<std::uint8_t> seen = viewshed(*grid, observer, options, context);
+  const auto visible = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
+  // At most 2,048 cells a side go to the page: a block is seen where its middle cell is.
+  const int block = (std::max(grid->columns, grid->rows) + 2047) / 2048;
+  const int columns = (grid->columns + block - 1) / block, rows = (grid->rows + block - 1) / block;
+  std::vector<std::uint8_t> picture;
+  picture.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const int column = std::min(c * block + block / 2, grid->columns - 1);
+      const int row = std::min(r * block + block / 2, grid->rows - 1);
+      picture.push_back(seen[grid->index(column, row)] ? 255 : 0);
+    }
+  const Vec3 origin = origin_of(models, model->file);
+  const Vec2 cell = grid->centre(observer.column, observer.row);
+  return {{{"visible_cells", visible},
+           {"cells", grid->cells()},
+           {"columns", columns},
+           {"rows", rows},
+           {"observer", {cell.x - origin.x, cell.y - origin.y}},
+           {"ground", grid->at(observer.column, observer.row)},
+           {"box",
+            {-0.5 * grid->cell_width - origin.x, 0.5 * grid->cell_height - origin.y, columns * block * grid->cell_width,
+             rows * block * grid->cell_height}}},
+          {make_array("seen", picture)}};
+}
+
+}  // namespace
+
+void add_terrain_calls(CallTable& table, const std::vector<TerrainInput>& inputs) {
+  const auto models = std::make_shared<Models>(inputs);
+  using Kind = Call::Kind;
+  table["/api/terrain/files"] = {Kind::quick, [models](const Json&, const Context&) { return files_call(*models); }};
+  table["/api/terrain/fit"] = {
+      Kind::slow, [models](const Json& in, const Context& context) { return fit_call(*models, in, context); }};
+  table["/api/terrain/errors"] = {
+      Kind::slow, [models](const Json& in, const Context& context) { return errors_call(*models, in, context); }};
+  table["/api/terrain/contours"] = {
+      Kind::slow, [models](const Json& in, const Context& context) { return contours_call(*models, in, context); }};
+  table["/api/terrain/at"] = {Kind::quick, [models](const Json& in, const Context&) { return at_call(*models, in); }};
+  table["/api/terrain/profile"] = {Kind::quick,
+                                   [models](const Json& in, const Context&) { return profile_call(*models, in); }};
+  table["/api/terrain/viewshed"] = {
+      Kind::slow, [models](const Json& in, const Context& context) { return viewshed_call(*models, in, context); }};
+}
+
+}  // namespace retalho::viewer

@@ -1,0 +1,83 @@
+#include "viewer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "guard.h"
+#include "page.h"
+#include "retalho/core/error.h"
+#include "terrain_calls.h"
+#include "work.h"
+
+namespace retalho::viewer {
+namespace {
+
+const PageFile* find_page(const std::string& path) {
+  const std::string_view wanted = path == "/" ? std::string_view("/index.html") : std::string_view(path);
+  for (const PageFile& file : page_files())
+    if (file.path == wanted) return &file;
+  return nullptr;
+}
+
+Reply page_reply(const PageFile& file) {
+  Reply reply;
+  reply.type = std::string(file.type);
+  reply.body = std::make_shared<const std::string>(file.gzip);
+  reply.headers = {{"Content-Encoding", "gzip"}};
+  return reply;
+}
+
+/// What every reply says to the browser: nothing from elsewhere, no frames around us, nothing kept.
+const std::vector<std::pair<std::string, std::string>>& safe_headers() {
+  static const std::vector<std::pair<std::string, std::string>> headers{
+      {"Content-Security-Policy",
+       "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; object-src 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cache-Control", "no-store"}};
+  return headers;
+}
+
+}  // namespace
+
+bool has_page() {
+  return find_page("/") != nullptr;
+}
+
+void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
+           const std::function<void(const std::string& address)>& ready) {
+  if (!has_page())
+    throw Error(Error::Kind::internal,
+                "this program was built without the page: install nodejs and npm, run scripts/setup, and try again");
+  CallTable table;
+  add_terrain_calls(table, inputs.terrains);
+  Workers workers(std::move(table), threads);
+  Guard guard;
+  guard.token = make_token();
+  guard.is_page = [](const std::string& path) { return find_page(path) != nullptr; };
+  guard.is_call = [&workers](const std::string& path) { return workers.knows(path); };
+  // The port is known when the server runs already: what comes before `open` is refused.
+  std::atomic<bool> open{false};
+  ServerHooks hooks;
+  hooks.admit = [&](const Request& request) {
+    return open ? refuse(guard, request) : std::optional<Reply>(error_reply(503, "busy", "not ready yet"));
+  };
+  hooks.handle = [&workers](std::shared_ptr<Exchange> exchange) {
+    if (const PageFile* file = find_page(exchange->request().path))
+      exchange->reply(page_reply(*file));
+    else
+      workers.submit(std::move(exchange));
+  };
+  hooks.headers = safe_headers();
+  const HttpServer server(std::move(hooks), {});
+  guard.port = server.port();
+  open = true;
+  ready(fmt::format("http://127.0.0.1:{}/#token={}", guard.port, guard.token));
+  while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
+}  // namespace retalho::viewer

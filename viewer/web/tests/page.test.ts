@@ -1,0 +1,105 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+import {splitEvents, unpack} from '../src/api';
+import {say} from '../src/dom';
+import {History} from '../src/history';
+import {rampBytes, rampColour} from '../src/ramps';
+import {ticks} from '../src/terrain/profile';
+import {fitRequest, firstLook, roundStep, SIDE_BY_SIDE, type FileInfo} from '../src/terrain/state';
+
+test('events are split, and what is incomplete waits', () => {
+  const whole = 'event: progress\ndata: {"a":1}\n\nevent: done\ndata: {"b":2}\n\n';
+  for (let cut = 0; cut <= whole.length; ++cut) {
+    const first = splitEvents(whole.slice(0, cut));
+    const second = splitEvents(first.rest + whole.slice(cut));
+    assert.deepEqual([...first.events, ...second.events], [['progress', '{"a":1}'], ['done', '{"b":2}']]);
+    assert.equal(second.rest, '');
+  }
+});
+
+test('binary answers: arrays start at multiples of 8, whatever the header is long', () => {
+  for (let pad = 0; pad < 9; ++pad) {
+    const header = JSON.stringify({words: {pad: 'x'.repeat(pad)}, arrays: [{name: 'a', type: 'f64', offset: 0, count: 2}, {name: 'b', type: 'u8', offset: 16, count: 3}]});
+    const start = Math.ceil((8 + header.length) / 8) * 8;
+    const buffer = new ArrayBuffer(start + 24), bytes = new Uint8Array(buffer);
+    bytes.set(new TextEncoder().encode('RTL1'));
+    new DataView(buffer).setUint32(4, header.length, true);
+    bytes.set(new TextEncoder().encode(header), 8);
+    new Float64Array(buffer, start, 2).set([1.25, -3]);
+    bytes.set([7, 8, 9], start + 16);
+    const {words, arrays} = unpack(buffer);
+    assert.equal((words.pad as string).length, pad);
+    assert.deepEqual([...arrays.a], [1.25, -3]);
+    assert.deepEqual([...arrays.b], [7, 8, 9]);
+  }
+  assert.throws(() => unpack(new ArrayBuffer(16)), /damaged/);
+});
+
+test('undo and redo walk through the changes; a slider is one step', () => {
+  let time = 0;
+  const history = new History({a: 0, tool: 'x'}, () => time);
+  for (let k = 1; k <= 5; ++k) {
+    time += 100;
+    history.change((s) => { s.a = k; }, {group: 'slider'});
+  }
+  time += 5000;
+  history.change((s) => { s.a = 9; }, {group: 'slider'});
+  history.change((s) => { s.tool = 'y'; }, {silent: true});
+  history.change((s) => { s.a = 9; });  // no change: no step
+  history.undo();
+  assert.equal(history.state.a, 5);
+  history.undo();
+  assert.equal(history.state.a, 0);
+  assert.equal(history.canUndo, false);
+  history.undo();
+  history.redo();
+  assert.equal(history.state.a, 5);
+  history.redo();
+  assert.deepEqual(history.state, {a: 9, tool: 'y'});
+  history.undo();
+  history.change((s) => { s.a = 1; });
+  assert.equal(history.canRedo, false);
+});
+
+test('numbers are said as people read them', () => {
+  assert.equal(say(-1.5), '−1.5');
+  assert.equal(say(NaN), 'no data');
+  assert.equal(say(null), 'no data');
+  assert.equal(say(1234567.891, 6), '1234568');
+  assert.equal(say(0.1 + 0.2), '0.3');
+  assert.equal(say(0.00001234), '1.234e−5');
+});
+
+test('ramps keep their ends, and the difference ramp is white in the middle', () => {
+  assert.deepEqual(rampColour('difference', 0), [33, 102, 172]);
+  assert.deepEqual(rampColour('difference', 1), [178, 24, 43]);
+  assert.deepEqual(rampColour('difference', 0.5), [247, 247, 247]);
+  assert.deepEqual(rampColour('amount', NaN), [0, 32, 76]);
+  assert.equal(rampBytes('heights').length, 1024);
+});
+
+test('the lightness of the ramps of amounts rises all the way: readable without colour', () => {
+  for (const name of ['heights', 'amount'] as const) {
+    let before = -1;
+    for (let i = 0; i <= 64; ++i) {
+      const [r, g, b] = rampColour(name, i / 64);
+      const lightness = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+      assert.ok(lightness >= before, `${name} at ${i}`);
+      before = lightness;
+    }
+  }
+});
+
+test('steps are 1, 2 or 5 times a power of ten', () => {
+  for (const [value, step] of [[1, 1], [1.9, 1], [2, 2], [4.99, 2], [5, 5], [77, 50], [0.03, 0.02]]) assert.ok(Math.abs(roundStep(value) - step) < 1e-12 * step, String(value));
+  assert.equal(roundStep(NaN), 1);
+  assert.deepEqual(ticks(150, 420, 4), [200, 300, 400]);
+});
+
+test('a fit is asked for by its error or by its vertices, never both', () => {
+  const info = {kind: 'grid', low: 100, high: 600, cell: 10, valid: 40000} as FileInfo;
+  const state = firstLook(0, info);
+  assert.deepEqual(fitRequest(state, SIDE_BY_SIDE[2], 100), {file: 0, surface: 'clough-tocher', fit: 'surface', max_error: 10, triangles: 100});
+  state.budget = 'vertices';
+  assert.deepEqual(fitRequest(state, SIDE_BY_SIDE[0], 100), {file: 0, surface: 'linear', fit: 'interpolate', vertices: 400, triangles: 100});
+});
