@@ -67,6 +67,7 @@ InputFiles read_inputs(const std::vector<std::string>& paths, const Context& con
       inputs.terrains.push_back(read_grid(path, name, context));
   }
   if (inputs.terrains.empty()) {
+    inputs.terrains_given = false;
     auto grid = std::make_shared<Raster>(example_grid());
     inputs.terrains.push_back({"Example: hills and a gorge",
                                fmt::format("{} x {} cells of 10 metre, made by formula", grid->columns, grid->rows),

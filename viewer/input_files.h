@@ -30,6 +30,7 @@ struct DocumentInput {
 
 struct InputFiles {
   std::vector<TerrainInput> terrains;
+  bool terrains_given = true;  ///< false: the only terrain is the example
   std::vector<DocumentInput> documents;
 };
 

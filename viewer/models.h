@@ -27,9 +27,10 @@ using ModelPointer = std::shared_ptr<const FittedModel>;
 
 class Models {
  public:
-  explicit Models(std::vector<TerrainInput> inputs) : inputs_(std::move(inputs)) {}
+  explicit Models(const InputFiles& inputs) : inputs_(inputs.terrains), given_(inputs.terrains_given) {}
 
   const std::vector<TerrainInput>& inputs() const { return inputs_; }
+  bool given() const { return given_; }  ///< false: the terrain is the example
   /// {"file", "surface", "fit", "max_error" or "vertices"} to a model; a model file is taken as it is.
   /// `fit`: "interpolate", "least-squares", "z-only" or "surface" (refined by the surface's own error).
   ModelPointer fit(const Json& input, const Context& context);
@@ -42,6 +43,7 @@ class Models {
   ModelPointer find(const std::string& id) const;
 
   std::vector<TerrainInput> inputs_;
+  bool given_;
   mutable std::mutex mutex_;
   std::deque<ModelPointer> kept_;
 };

@@ -108,7 +108,7 @@ Answer files_call(const Models& models) {
     }
     list.push_back(one);
   }
-  return {{{"files", list}}};
+  return {{{"files", list}, {"given", models.given()}}};
 }
 
 /// Fits, and gives the surface as triangles: as fine as the page's budget of triangles lets it be.
@@ -338,7 +338,7 @@ Answer viewshed_call(Models& models, const Json& input, const Context& context) 
 
 }  // namespace
 
-void add_terrain_calls(CallTable& table, const std::vector<TerrainInput>& inputs) {
+void add_terrain_calls(CallTable& table, const InputFiles& inputs) {
   const auto models = std::make_shared<Models>(inputs);
   using Kind = Call::Kind;
   table["/api/terrain/files"] = {Kind::quick, [models](const Json&, const Context&) { return files_call(*models); }};

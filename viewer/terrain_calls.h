@@ -7,6 +7,6 @@
 namespace retalho::viewer {
 
 /// Adds /api/terrain/... to `table`. The calls keep the inputs and the last few models that were fitted.
-void add_terrain_calls(CallTable& table, const std::vector<TerrainInput>& inputs);
+void add_terrain_calls(CallTable& table, const InputFiles& inputs);
 
 }  // namespace retalho::viewer

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "curve_calls.h"
 #include "guard.h"
 #include "page.h"
 #include "retalho/core/error.h"
@@ -54,7 +55,8 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
     throw Error(Error::Kind::internal,
                 "this program was built without the page: install nodejs and npm, run scripts/setup, and try again");
   CallTable table;
-  add_terrain_calls(table, inputs.terrains);
+  add_terrain_calls(table, inputs);
+  add_curve_calls(table);
   Workers workers(std::move(table), threads);
   Guard guard;
   guard.token = make_token();

@@ -139,7 +139,7 @@ export const tests = [
     assert.equal(JSON.parse(readFileSync(file, 'utf8')).terrain.panels.length, 3);
     await page.getByLabel('Side by side').selectOption('1');
     await view.quiet();
-    await page.locator('input[type=file]').setInputFiles(file);
+    await page.locator('input.open-view').setInputFiles(file);
     await view.quiet();
     assert.equal(await page.locator('.overlay').count(), 3);
 

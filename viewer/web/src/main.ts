@@ -1,17 +1,17 @@
 // The page: its frame, its state, and which view is shown.
 import {ask, CallError, takeToken} from './api';
+import {firstCurves, PRESETS} from './curves/state';
+import {CurvesView} from './curves/view';
 import {download, make} from './dom';
 import {History} from './history';
+import {startPage} from './start';
+import {decoded, encoded, merged, type PageState, type ViewName} from './state';
 import {Tasks} from './tasks';
-import {firstLook, type FileInfo, type TerrainState} from './terrain/state';
+import {firstLook, type FileInfo} from './terrain/state';
 import {TerrainView} from './terrain/view';
 import './style.css';
 
-interface PageState {
-  theme: 'auto' | 'light' | 'dark';
-  terrain: TerrainState;
-}
-
+const VIEWS: [ViewName, string][] = [['start', 'Start'], ['terrain', 'Terrain'], ['curves', 'Curves']];
 const page = document.getElementById('page') as HTMLElement;
 
 function fail(words: string): void {
@@ -23,57 +23,62 @@ function linkedState(first: PageState): PageState {
   const match = /^#view=([\w-]+)$/.exec(location.hash);
   if (!match) return first;
   try {
-    const text = new TextDecoder().decode(Uint8Array.from(atob(match[1].replace(/-/g, '+').replace(/_/g, '/')), (c) => c.charCodeAt(0)));
-    return merged(first, JSON.parse(text));
+    return merged(first, decoded(match[1]));
   } catch {
     return first;
   }
 }
 
-/** The values of `given` where they are of the kind that `first` has. */
-function merged<T>(first: T, given: unknown): T {
-  if (Array.isArray(first)) return (Array.isArray(given) ? given : first) as T;
-  if (first === null) return given as T;
-  if (typeof first !== 'object') return (typeof given === typeof first ? given : first) as T;
-  const out = {...first};
-  if (typeof given !== 'object' || given === null) return out;
-  for (const name of Object.keys(first) as (keyof T)[]) {
-    const value = (given as Record<string, unknown>)[name as string];
-    if (value !== undefined) out[name] = merged(first[name], value);
-  }
-  return out;
-}
-
-function encoded(state: PageState): string {
-  const bytes = new TextEncoder().encode(JSON.stringify(state));
-  return btoa(String.fromCharCode(...bytes)).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
-}
-
 async function start(): Promise<void> {
   if (!takeToken()) return fail('This address lacks its token. Use the whole address that `retalho view` printed.');
   page.replaceChildren(make('main', {class: 'failure'}, make('p', {}, 'Asking the program what it has opened …')));
-  let files: FileInfo[];
+  let files: FileInfo[], given: boolean;
   try {
-    files = (await ask('/api/terrain/files')).words.files as FileInfo[];
+    const {words} = await ask('/api/terrain/files');
+    files = words.files as FileInfo[];
+    given = words.given as boolean;
   } catch (error) {
     return fail(error instanceof CallError ? `${error.message}.` : String(error));
   }
-  const first: PageState = {theme: 'auto', terrain: firstLook(0, files[0])};
+  const first: PageState = {theme: 'auto', view: given ? 'terrain' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves()};
   const history = new History<PageState>(linkedState(first));
   if (!files[history.state.terrain.file]) history.change((s) => { s.terrain = first.terrain; }, {silent: true});
 
-  const status = make('div', {class: 'status', role: 'status', 'aria-live': 'polite'});
-  const cancel = make('button', {type: 'button', click: () => tasks.cancel()}, 'Stop');
   const tasks = new Tasks(() => showStatus());
-  let view: TerrainView;
+  let terrain: TerrainView;
   try {
-    view = new TerrainView(files, history.state.terrain,
+    terrain = new TerrainView(files, history.state.terrain,
       (change, group) => history.change((s) => change(s.terrain), {group}), tasks,
       (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
       (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true}));
   } catch {
     return fail('This browser gives no WebGL 2 here, which the pictures need. Another browser, or its hardware acceleration, may help.');
   }
+  const curves = new CurvesView(history.state.curves, (change, options) => history.change((s) => change(s.curves), options), tasks);
+  const starting = startPage(files,
+    (file) => history.change((s) => { s.view = 'terrain'; if (s.terrain.file !== file) s.terrain = firstLook(file, files[file]); }),
+    (preset) => { curves.open(PRESETS[preset][1]); go('curves'); });
+
+  function go(view: ViewName): void {
+    history.change((s) => { s.view = view; }, {silent: true});
+  }
+  const tabs = new Map<ViewName, HTMLButtonElement>();
+  const tabBar = make('div', {class: 'tabs', role: 'tablist', 'aria-label': 'View'}, ...VIEWS.map(([view, words]) => {
+    const tab = make('button', {type: 'button', role: 'tab', click: () => go(view)}, words);
+    tabs.set(view, tab);
+    return tab;
+  }));
+  tabBar.addEventListener('keydown', (event) => {
+    const step = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+    if (step === 0) return;
+    const at = VIEWS.findIndex(([view]) => view === history.state.view);
+    const [next] = VIEWS[(at + step + VIEWS.length) % VIEWS.length];
+    go(next);
+    tabs.get(next)?.focus();
+  });
+
+  const status = make('div', {class: 'status', role: 'status', 'aria-live': 'polite'});
+  const cancel = make('button', {type: 'button', click: () => tasks.cancel()}, 'Stop');
   const undo = make('button', {type: 'button', title: 'Ctrl+Z', click: () => history.undo()}, 'Undo');
   const redo = make('button', {type: 'button', title: 'Ctrl+Shift+Z', click: () => history.redo()}, 'Redo');
   const theme = make('button', {type: 'button', click: () => history.change((s) => { s.theme = s.theme === 'auto' ? 'dark' : s.theme === 'dark' ? 'light' : 'auto'; }, {silent: true})});
@@ -82,25 +87,26 @@ async function start(): Promise<void> {
     note('The address of this tab now holds what is shown: it restores it in this tab, while the program runs.');
   }}, 'Link');
   const picture = make('button', {type: 'button', click: async () => {
-    const blob = await view.scene.picture();
+    const blob = await terrain.scene.picture();
     if (blob) download('terrain.png', blob);
   }}, 'Save picture');
-  const save = make('button', {type: 'button', title: 'What is shown, as a file that Open reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
-  const input = make('input', {type: 'file', accept: '.json', hidden: true, change: async () => {
+  const save = make('button', {type: 'button', title: 'What is shown, as a file that Open view reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
+  const input: HTMLInputElement = make('input', {type: 'file', class: 'open-view', accept: '.json', hidden: true, change: async () => {
     const file = input.files?.[0];
     if (!file) return;
     try {
-      const given = merged(first, JSON.parse(await file.text()));
-      if (!files[given.terrain.file]) throw new Error(`it shows file ${given.terrain.file + 1}, which is not open`);
-      history.change((s) => { Object.assign(s, given); });
+      const opened = merged(first, JSON.parse(await file.text()));
+      if (!files[opened.terrain.file]) throw new Error(`it shows file ${opened.terrain.file + 1}, which is not open`);
+      history.change((s) => { Object.assign(s, opened); });
     } catch (error) {
       note(`${file.name} cannot be opened: ${error instanceof Error ? error.message : String(error)}`);
     }
     input.value = '';
   }});
   const open = make('button', {type: 'button', click: () => input.click()}, 'Open view');
-  const header = make('header', {}, make('h1', {}, 'Retalho'), undo, redo, make('span', {class: 'gap'}), status, cancel, make('span', {class: 'gap'}), link, save, open, input, picture, theme);
-  page.replaceChildren(header, make('aside', {}, view.controls.element), make('main', {}, view.stage));
+  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, make('span', {class: 'gap'}), status, cancel, make('span', {class: 'gap'}), link, save, open, input, picture, theme);
+  const aside = make('aside', {}, terrain.controls.element, curves.element);
+  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage));
 
   let noted = '';
   function note(words: string): void {
@@ -122,18 +128,28 @@ async function start(): Promise<void> {
     status.dataset.busy = String(running.length > 0);
   }
   function show(): void {
-    const {theme: chosen, terrain} = history.state;
-    if (chosen === 'auto') document.documentElement.removeAttribute('data-theme');
-    else document.documentElement.dataset.theme = chosen;
-    theme.textContent = `Theme: ${chosen}`;
+    const state = history.state;
+    if (state.theme === 'auto') document.documentElement.removeAttribute('data-theme');
+    else document.documentElement.dataset.theme = state.theme;
+    theme.textContent = `Theme: ${state.theme}`;
     undo.disabled = !history.canUndo;
     redo.disabled = !history.canRedo;
-    view.show(terrain, true);
+    for (const [view, tab] of tabs) {
+      tab.setAttribute('aria-selected', String(view === state.view));
+      tab.tabIndex = view === state.view ? 0 : -1;
+    }
+    page.dataset.view = state.view;
+    starting.hidden = state.view !== 'start';
+    aside.hidden = state.view === 'start';
+    picture.hidden = state.view !== 'terrain';
+    terrain.show(state.terrain, state.view === 'terrain');
+    curves.show(state.curves, state.view === 'curves');
   }
   history.listen(show);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);
   addEventListener('keydown', (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.target instanceof HTMLInputElement && event.target.type === 'number') return;
+    const typing = event.target instanceof HTMLInputElement && (event.target.type === 'number' || event.target.type === 'text');
+    if (!(event.ctrlKey || event.metaKey) || typing) return;
     const key = event.key.toLowerCase();
     if (key === 'z' && !event.shiftKey) history.undo();
     else if (key === 'y' || (key === 'z' && event.shiftKey)) history.redo();

@@ -1,9 +1,11 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {splitEvents, unpack} from '../src/api';
+import {addPoint, clipped, clippedPath, firstCurves, growable, PRESETS, removePoint} from '../src/curves/state';
 import {say} from '../src/dom';
 import {History} from '../src/history';
 import {rampBytes, rampColour} from '../src/ramps';
+import {decoded, encoded, merged} from '../src/state';
 import {ticks} from '../src/terrain/profile';
 import {fitRequest, firstLook, roundStep, SIDE_BY_SIDE, type FileInfo} from '../src/terrain/state';
 
@@ -102,4 +104,37 @@ test('a fit is asked for by its error or by its vertices, never both', () => {
   assert.deepEqual(fitRequest(state, SIDE_BY_SIDE[2], 100), {file: 0, surface: 'clough-tocher', fit: 'surface', max_error: 10, triangles: 100});
   state.budget = 'vertices';
   assert.deepEqual(fitRequest(state, SIDE_BY_SIDE[0], 100), {file: 0, surface: 'linear', fit: 'interpolate', vertices: 400, triangles: 100});
+});
+
+test('lines are cut at the limit and nowhere else', () => {
+  assert.deepEqual(clipped([0, 0], [1, 2], 10), [[0, 0], [1, 2]]);
+  assert.deepEqual(clipped([-20, 0], [20, 0], 10), [[-10, 0], [10, 0]]);
+  assert.equal(clipped([-20, 11], [20, 11], 10), null);
+  assert.equal(clipped([0, 21], [21, 0], 10), null);
+  assert.deepEqual(clipped([0, -40], [0, 5], 10), [[0, -10], [0, 5]]);
+  assert.equal(clippedPath([[0, 0], [1, 0], [1, 1]], 10), 'M0.00 0.00L1.00 0.00L1.00 1.00');
+  assert.equal(clippedPath([[0, 0], [20, 0], [0, 1]], 10), 'M0.00 0.00L10.00 0.00M10.00 0.50L0.00 1.00');
+});
+
+test('points are added and removed where the kind allows it', () => {
+  const spec = {kind: 'bezier', points: [[0, 0], [1, 1]], weights: [1, 2]};
+  assert.ok(growable(spec));
+  addPoint(spec, [2, 0]);
+  assert.deepEqual(spec.weights, [1, 2, 1]);
+  assert.ok(removePoint(spec, 0));
+  assert.deepEqual(spec, {kind: 'bezier', points: [[1, 1], [2, 0]], weights: [2, 1]});
+  assert.equal(removePoint(spec, 0), false);  // a curve keeps two points
+  assert.equal(growable({kind: 'bezier', degree: 3, points: []}), false);
+  assert.equal(growable({kind: 'implicit', f: 'x'}), false);
+  assert.ok(PRESETS.every(([, document]) => document.curves.length > 0));
+});
+
+test('a link holds the state, and wrong values in it are left out', () => {
+  const state = {a: 1, name: 'Pão – 山', list: [1, 2], inner: {on: true}, maybe: null};
+  const text = encoded(state);
+  assert.match(text, /^[\w-]+$/);
+  assert.deepEqual(merged({a: 0, name: '', list: [], inner: {on: false}, maybe: null}, decoded(text)), state);
+  assert.deepEqual(merged({a: 0, inner: {on: false}}, {a: 'x', inner: 5, other: 1}), {a: 0, inner: {on: false}});
+  const curves = firstCurves();
+  assert.deepEqual(merged(curves, decoded(encoded(curves))), curves);
 });
