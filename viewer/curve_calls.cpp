@@ -44,7 +44,8 @@ Json places(const std::vector<Vec3>& points) {
   return list;
 }
 
-/// The drawn curve: one list of points for each unbroken part. The distance of the drawing is a five-thousandth of its size.
+/// The drawn curve: one list of points for each unbroken part. The distance of the drawing is a five-thousandth of its
+/// size.
 Json drawn(const Curve& curve) {
   Json lines = Json::array();
   const Bounds3 box = exact_bounds(curve);
