@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contour_map.h"
 #include "fitting.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
@@ -22,13 +23,14 @@ namespace {
 const std::vector<std::string> kSurfaces{"bicubic", "linear", "powell-sabin", "clough-tocher"};
 const std::vector<std::string> kTwists{"spline", "adini", "zero"};
 const std::vector<std::string> kEnds{"not-a-knot", "natural"};
-const std::vector<std::string> kEndings{".gpkg", ".geojson", ".json", ".shp", ".dxf"};
+const std::vector<std::string> kEndings{".gpkg", ".geojson", ".json", ".shp", ".dxf", ".svg", ".pdf"};
 
 struct Options {
   std::string input, output, levels, surface, twist = "spline", ends = "not-a-knot";
   double interval = 0, base = 0, tolerance = 0;
   int index_every = 5;
   bool bands = false, ring = false, raw = false;
+  SheetFlags sheet;
   GridFlags grid;
   PointOptions points;
   BudgetFlags budget;
@@ -40,6 +42,7 @@ struct Surface {
   std::optional<Terrain> terrain;
   double low = 0, high = 0;  ///< of the samples; the surface may go a little beyond
   double cell = 0;           ///< size of a cell, or of a triangle's edge; local units
+  std::string height_unit;
   const Georef& georef() const { return bicubic ? bicubic->georef : terrain->georef; }
 };
 
@@ -95,6 +98,7 @@ Surface load_surface(const Program& program, const Options& options, const Conte
     surface.low = summary.minimum;
     surface.high = summary.maximum;
     surface.cell = std::min(raster.cell_width, raster.cell_height);
+    surface.height_unit = raster.height_unit;
     return surface;
   }
   const Budget budget = resolve(program, options.budget, summary.valid, summary.maximum - summary.minimum);
@@ -145,24 +149,52 @@ void run(const Program& program, const Options& options) {
   if ((options.interval > 0) == !options.levels.empty())
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
   check_output(program, options.output, kEndings, {options.input});
+  check_sheet_flags(options.sheet, options.output);
   const Context context = program.context();
   Surface surface = load_surface(program, options, context);
   ContourOptions contour;
-  contour.simplify = !options.raw;
   contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
   if (!(options.tolerance > 0))
     program.say(fmt::format("--tolerance {:.6g}: a tenth of {} (chosen, as none was given)", contour.tolerance,
                             surface.bicubic || surface.terrain->grid.columns > 0 ? "a cell" : "a triangle's edge"));
+  // Curves are fitted to every traced vertex, and take what tracing leaves of the tolerance.
+  const double tolerance = contour.tolerance;
+  contour.simplify = !options.raw && !options.sheet.curves;
+  if (options.sheet.curves) contour.tolerance *= kTracedShare;
   ContourExtras extras;
   extras.want_bands = options.bands;
   const std::vector<double> levels = levels_of(options, surface);
+  const bool sheet = is_sheet(options.output);
+  MapSheet map;
+  if (sheet) {
+    map.content.extent = surface.bicubic ? extent_of(*surface.bicubic) : extent_of(*surface.terrain);
+    map.content.low = surface.low;
+    map.content.high = surface.high;
+    map.content.height_unit = surface.height_unit;
+    const double least = spot_prominence(levels, surface.low, surface.high);
+    map.content.spots = surface.bicubic ? find_spot_heights(*surface.bicubic, least, context)
+                                        : find_spot_heights(*surface.terrain, least, context);
+  }
   const Georef georef = surface.georef();
+  if (options.sheet.curves && options.bands) {
+    // Tints need no more vertices than polylines do: bands of their own, thinned.
+    ContourOptions thinned{tolerance, !options.raw};
+    surface.bicubic ? trace_contours(*surface.bicubic, levels, thinned, context, &extras)
+                    : trace_contours(*surface.terrain, levels, thinned, context, &extras);
+    extras.want_bands = false;
+  }
   const ContourSet set = surface.bicubic
                              ? trace_contours(std::move(*surface.bicubic), levels, contour, context, &extras)
                              : trace_contours(*surface.terrain, levels, contour, context, &extras);
   context.check();
   const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
-  if (options.bands)
+  if (sheet) {
+    map.content.lines = &set;
+    map.content.bands = options.bands ? &extras.bands : nullptr;
+    map.content.georef = georef;
+    map.tolerance = tolerance;
+    write_map_sheet(program, map, options.sheet, options.output, file, context);
+  } else if (options.bands)
     write_bands(extras.bands, georef, options.output, file, context);
   else
     write_contours(set, georef, options.output, file, context);
@@ -171,7 +203,9 @@ void run(const Program& program, const Options& options) {
   for (const ContourLine& line : set.lines) closed += line.closed ? 1 : 0;
   if (set.lines.empty())
     program.say(fmt::format("no level lies between {:.6g} and {:.6g}: {}", surface.low, surface.high,
-                            options.bands ? "one band" : "the layer has no features"));
+                            sheet           ? "the sheet has a frame alone"
+                            : options.bands ? "one band"
+                                            : "the layer has no features"));
   if (!set.singular.empty())
     program.say(
         fmt::format("{} places are singular (a saddle or a flat exactly on a level): the lines are joined there "
@@ -179,8 +213,9 @@ void run(const Program& program, const Options& options) {
                     set.singular.size()));
   nlohmann::ordered_json json = {{"levels", set.levels.size()}, {"lines", set.lines.size()},
                                  {"closed_lines", closed},      {"vertices", set.points.size()},
-                                 {"tolerance", set.tolerance},  {"height_quantum", set.height_quantum}};
+                                 {"tolerance", tolerance},      {"height_quantum", set.height_quantum}};
   if (options.bands) json["polygons"] = extras.bands.polygons.size();
+  if (sheet) json["sheet"] = sheet_json(map.report, options.sheet.curves);
   json["singular"] = singular_json(set, georef);
   json["seconds"] = watch.seconds();
   if (program.json) return program.print(json);
@@ -188,10 +223,11 @@ void run(const Program& program, const Options& options) {
       {"levels", fmt::format("{}", set.levels.size())},
       {"lines", fmt::format("{} ({} closed)", set.lines.size(), closed)},
       {"vertices", fmt::format("{} (traced {})", set.points.size(), extras.stats.raw_points)},
-      {"tolerance", fmt::format("{:.6g}", set.tolerance)},
+      {"tolerance", fmt::format("{:.6g}", tolerance)},
       {"singular places", fmt::format("{}", set.singular.size())},
       {"seconds", fmt::format("{:.2f}", watch.seconds())}};
   if (options.bands) lines.insert(lines.begin() + 1, {"polygons", fmt::format("{}", extras.bands.polygons.size())});
+  if (sheet) append_sheet_lines(lines, map.report, options.sheet.curves);
   program.print(list_text(lines));
 }
 
@@ -205,11 +241,14 @@ void add_contour(CLI::App& root, Program& program) {
                   "retalho contour dem.tif -o bands.gpkg --interval 100 --bands\n"
                   "retalho contour dem.tif -o lines.shp --levels 350,400,500 --tolerance 2\n"
                   "retalho contour model.retalho -o lines.geojson --interval 10\n"
+                  "retalho contour dem.tif -o map.pdf --interval 20 --bands --curves --title 'Jacksboro' --sheet A3\n"
                   "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
   command->add_option("INPUT", options->input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
       ->required()
       ->type_name("");
-  command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf")->required()->type_name("FILE");
+  command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf; .svg or .pdf: a map sheet")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--interval", options->interval, "Height between levels")
       ->type_name("D")
       ->check(CLI::PositiveNumber);
@@ -231,7 +270,8 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("KIND");
   command->add_option("--ends", options->ends, "Bicubic: not-a-knot (default) or natural")->type_name("KIND");
   command->add_flag("--ring", options->ring, "Bicubic: splines all through, although they ring beside flats and lakes");
-  command->add_flag("--bands", options->bands, "Polygons between the levels instead of lines");
+  command->add_flag("--bands", options->bands,
+                    "Polygons between the levels instead of lines; on a map sheet, tints beneath them");
   command->add_flag("--raw", options->raw, "Keep every traced vertex");
   command
       ->add_option("--index-every", options->index_every,
@@ -242,6 +282,7 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("NAME");
   command->add_option("--layer", options->points.layer, "Vector files with several layers: which one")
       ->type_name("NAME");
+  add_sheet_flags(*command, options->sheet);
   add_budget_flags(*command, options->budget);
   add_grid_flags(*command, options->grid);
   command->callback([&program, options] { run(program, *options); });

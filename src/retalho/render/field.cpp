@@ -121,6 +121,10 @@ Extent extent_of(const Terrain& terrain) {
   return e;
 }
 
+Extent extent_of(const BicubicGrid& grid) {
+  return {{0, -(grid.rows - 1) * grid.cell_height}, {(grid.columns - 1) * grid.cell_width, 0}};
+}
+
 Extent moved(const Extent& extent, const Georef& from, const Georef& to) {
   return {to.to_local(from.to_crs(extent.low)), to.to_local(from.to_crs(extent.high))};
 }

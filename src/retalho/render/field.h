@@ -7,6 +7,7 @@
 #include "retalho/core/context.h"
 #include "retalho/core/vec.h"
 #include "retalho/raster/raster.h"
+#include "retalho/terrain/bicubic.h"
 #include "retalho/terrain/evaluate.h"
 
 namespace retalho {
@@ -46,6 +47,7 @@ FieldSource difference_of(FieldSource first, FieldSource second);
 /// The box of the cell centres, or of the vertices.
 Extent extent_of(const Raster& raster);
 Extent extent_of(const Terrain& terrain);
+Extent extent_of(const BicubicGrid& grid);
 /// `extent` of one local system in another's.
 Extent moved(const Extent& extent, const Georef& from, const Georef& to);
 
