@@ -106,5 +106,42 @@ TEST(Contour, RefusesWithAMessageAndLeavesNothing) {
   EXPECT_EQ(run(folder, "contour dem.asc -o x.shp --interval 30 --overwrite").code, 0);
 }
 
+TEST(ContourSheet, SvgAndPdfMapSheets) {
+  const Hills folder;
+  const Outcome svg =
+      run(folder, "contour dem.asc -o map.svg --interval 10 --bands --curves --title 'Two hills' --sheet A5 --json");
+  ASSERT_EQ(svg.code, 0) << svg.err;
+  const auto json = svg.json();
+  EXPECT_GT(json["sheet"]["curves"].get<int>(), 20);
+  EXPECT_EQ(json["sheet"]["unproved_pairs"].get<int>(), 0);
+  EXPECT_NEAR(json["tolerance"].get<double>(), 1, 1e-12);
+  const std::string text = slurp(folder / "map.svg");
+  EXPECT_NE(text.find("width=\"210mm\" height=\"148mm\""), std::string::npos);
+  EXPECT_NE(text.find("Two hills"), std::string::npos);
+  EXPECT_NE(text.find("Contour lines every 10"), std::string::npos);
+  EXPECT_TRUE(text.ends_with("</svg>\n"));
+  ASSERT_EQ(run(folder, "contour dem.asc -o map.pdf --interval 10 --sheet 300x200").code, 0);
+  EXPECT_TRUE(slurp(folder / "map.pdf").starts_with("%PDF-"));
+  EXPECT_EQ(run(folder, "contour dem.asc -o map.pdf --interval 10").code, 5) << "it exists";
+  // Models have sheets too, and a grid without any line has a frame and a word.
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 2").code, 0);
+  EXPECT_EQ(run(folder, "contour m.retalho -o m.svg --interval 20 --curves --bands").code, 0);
+  const Outcome none = run(folder, "contour dem.asc -o none.svg --levels 5000 --curves");
+  ASSERT_EQ(none.code, 0) << none.err;
+  EXPECT_NE(none.err.find("frame alone"), std::string::npos);
+  EXPECT_NE(slurp(folder / "none.svg").find("No contour line"), std::string::npos);
+}
+
+TEST(ContourSheet, RefusesWithAMessageAndLeavesNothing) {
+  const Hills folder;
+  const std::size_t before = folder.entries();
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.svg --interval 10 --sheet A9").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.svg --interval 10 --sheet 40x40").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --interval 10 --curves").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --interval 10 --title T").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o nowhere/x.pdf --interval 10").code, 5);
+  EXPECT_EQ(folder.entries(), before);
+}
+
 }  // namespace
 }  // namespace retalho::test

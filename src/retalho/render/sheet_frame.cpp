@@ -131,6 +131,9 @@ PageGroup draw_frame(const SheetMap& map, const Georef& georef, const TextWidth&
     const double at = map.exact(georef.to_local({west_north.x, y})).y;
     group.paths.push_back({line_path({map.low.x, at}, {map.low.x - kTick, at}), {}});
     group.paths.push_back({line_path({map.high.x, at}, {map.high.x + kTick, at}), {}});
+    // Not at a corner, where words along the other side stand.
+    const double half = 0.5 * kWords * width(words) + 1.5;
+    if (at - half < map.low.y || at + half > map.high.y) return;
     group.texts.push_back(words_at({map.low.x - kTick - 1.6, at}, words, -90, 0.5));
     group.texts.push_back(words_at({map.high.x + kTick + 1.6, at}, words, -90, 0.5));
   });

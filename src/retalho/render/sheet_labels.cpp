@@ -12,9 +12,9 @@ namespace retalho {
 namespace {
 
 constexpr double kInkStep = 0.25;
-constexpr double kCandidateStep = 2;   // mm along a line
-constexpr double kSameLine = 60;       // mm between two labels of a line
-constexpr double kAnyLine = 14;        // mm between labels of different lines
+constexpr double kCandidateStep = 2;  // mm along a line
+constexpr double kSameLine = 60;      // mm between two labels of a line
+constexpr double kAnyLine = 14;       // mm between labels of different lines
 constexpr double kLeastChord = 0.95;  // of the stretch under a label: straighter than this
 
 struct Candidate {
