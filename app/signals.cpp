@@ -1,5 +1,7 @@
 #include "signals.h"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace retalho::app {
@@ -12,6 +14,15 @@ void handle(int) {
   cancel.store(true, std::memory_order_relaxed);
 }
 
+/// Libraries abort where they cannot go on (GDAL without memory): exit 1 with words, as for all that fails inside.
+void aborted(int) {
+  constexpr char kWords[] =
+      "retalho: failed inside: a library gave up, perhaps for want of memory. Please report it with the command "
+      "line.\n";
+  if (::write(STDERR_FILENO, kWords, sizeof kWords - 1) < 0) ::_exit(1);
+  ::_exit(1);
+}
+
 }  // namespace
 
 void catch_signals() {
@@ -21,7 +32,10 @@ void catch_signals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A closed terminal is like SIGTERM; nohup's wish is kept.
+  if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGABRT, aborted);
 }
 
 const std::atomic<bool>& cancel_flag() {

@@ -2,9 +2,13 @@
 #include "retalho/core/atomic_file.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "retalho/core/error.h"
 
@@ -101,6 +105,76 @@ TEST_F(AtomicFileTest, PartsShareTheFilesFate) {
   }
   EXPECT_FALSE(fs::exists(name("x.shp")));
   EXPECT_EQ(files(), 2U);  // the folder, and the old x.shp.xml
+}
+
+TEST_F(AtomicFileTest, ASetThatCannotBeReplacedIsBackAsItWas) {
+  // The second part's name is a folder's: by then the old file and the first part are away.
+  write_file(name("x.shp"), "old shape", true);
+  write_file(name("x.aaa"), "old part", true);
+  fs::create_directory(name("x.zzz"));
+  {
+    AtomicFile file(name("x.shp"), true);
+    const std::string stem = file.temporary().substr(0, file.temporary().size() - 4);
+    for (const char* ending : {".shp", ".aaa", ".zzz"}) write_file(stem + ending, "new", true);
+    EXPECT_THROW(file.commit(), CannotWrite);
+  }
+  EXPECT_EQ(read_file(name("x.shp")), "old shape");
+  EXPECT_EQ(read_file(name("x.aaa")), "old part");
+  EXPECT_EQ(files(), 3U);
+}
+
+TEST_F(AtomicFileTest, SupersededPartsGoWithTheOldFile) {
+  write_file(name("x.tif"), "old", true);
+  write_file(name("x.tif.aux.xml"), "old statistics", true);
+  {
+    AtomicFile file(name("x.tif"), true);
+    file.supersede(name("x.tif.aux.xml"));
+    write_file(file.temporary(), "new", true);
+  }
+  EXPECT_EQ(read_file(name("x.tif.aux.xml")), "old statistics");
+  {
+    AtomicFile file(name("x.tif"), true);
+    file.supersede(name("x.tif.aux.xml"));
+    write_file(file.temporary(), "new", true);
+    file.commit();
+  }
+  EXPECT_EQ(read_file(name("x.tif")), "new");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFileTest, WhatAKilledProcessLeftIsSwept) {
+  const auto killed = [&](bool away) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      AtomicFile file(name("x.shp"), true);
+      std::ofstream(file.temporary()) << "half";
+      std::string old = file.temporary();
+      old.replace(old.rfind(".tmp"), 4, ".old");
+      if (away) ::rename(name("x.shp").c_str(), old.c_str());
+      ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+  };
+  write_file(name("x.shp"), "old", true);
+  write_file(name("x.y.shp"), "of another", true);
+  killed(false);
+  ASSERT_EQ(files(), 3U);
+  { const AtomicFile file(name("x.y.shp"), true); }
+  EXPECT_EQ(files(), 3U);  // not its own
+  { const AtomicFile file(name("x.shp"), true); }
+  EXPECT_EQ(files(), 2U);
+  killed(true);
+  EXPECT_FALSE(fs::exists(name("x.shp")));
+  { const AtomicFile file(name("x.shp"), true); }
+  EXPECT_EQ(read_file(name("x.shp")), "old");
+  EXPECT_EQ(files(), 2U);
+  // One in the making by a process that lives stays.
+  const AtomicFile mine(name("x.shp"), true);
+  std::ofstream(mine.temporary()) << "in the making";
+  { const AtomicFile file(name("x.tif"), true); }
+  EXPECT_TRUE(fs::exists(mine.temporary()));
 }
 
 TEST_F(AtomicFileTest, NamesTheMissingFolder) {

@@ -5,23 +5,20 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <cstring>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
+#include "retalho/raster/checked_files.h"
+#include "retalho/raster/gdal.h"
 
 namespace retalho {
 
 namespace {
 
 using Dataset = std::unique_ptr<GDALDataset, void (*)(GDALDataset*)>;
-
-void register_drivers() {
-  static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
-}
 
 void add_line(const OGRLineString& line, bool ring, const std::string& name, std::vector<VectorLine>& out) {
   if (line.getNumPoints() < 2) return;
@@ -97,7 +94,7 @@ void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const
 }  // namespace
 
 std::vector<VectorLine> read_vector_lines(const std::string& path) {
-  register_drivers();
+  register_gdal();
   CPLErrorReset();
   CPLPushErrorHandler(CPLQuietErrorHandler);
   const Dataset data(
@@ -122,7 +119,7 @@ std::vector<VectorLine> read_vector_lines(const std::string& path) {
 }
 
 void write_vector_lines(const std::vector<VectorLine>& lines, const std::string& path, bool overwrite) {
-  register_drivers();
+  register_gdal();
   const Format* format = nullptr;
   for (const Format& f : kFormats)
     if (path.ends_with(f.ending)) format = &f;
@@ -130,28 +127,21 @@ void write_vector_lines(const std::vector<VectorLine>& lines, const std::string&
   if (lines.empty()) throw UsageError("there is no line to write", path);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format->driver);
   if (!driver) throw CannotWrite(fmt::format("this GDAL has no driver {}", format->driver), path);
-  AtomicFile file(path, overwrite);
-  CPLErrorReset();
-  CPLPushErrorHandler(CPLQuietErrorHandler);
-  struct Pop {
-    ~Pop() { CPLPopErrorHandler(); }
-  } pop;
   const std::string kind = format->driver;
-  std::filesystem::remove(file.temporary());  // the driver makes the file itself
-  write_lines(*driver, lines, file.temporary(), path, kind == "GeoJSON", kind != "DXF");
-  if (CPLGetLastErrorType() >= CE_Failure) throw CannotWrite(fmt::format("cannot write: {}", gdal_message()), path);
-  if (kind == "ESRI Shapefile") {
-    // A shapefile is several files: the companions follow under the final name.
-    const std::filesystem::path from(file.temporary()), to(path);
-    for (const char* ending : {".shx", ".dbf", ".prj", ".cpg"}) {
-      auto source = from, target = to;
-      source.replace_extension(ending);
-      target.replace_extension(ending);
-      std::error_code code;
-      if (std::filesystem::exists(source)) std::filesystem::rename(source, target, code);
-      if (code) throw CannotWrite(fmt::format("cannot write {}: {}", target.string(), code.message()), path);
-    }
+  AtomicFile file(path, overwrite);
+  const MemoryFile memory(format->ending);
+  const CheckedFiles checked;
+  const std::string name = MemoryFile::serves(kind)     ? memory.name()
+                           : CheckedFiles::serves(kind) ? checked.name(file.temporary())
+                                                        : file.temporary();
+  {
+    const GdalMessages messages;
+    write_lines(*driver, lines, name, path, kind == "GeoJSON", kind != "DXF");
+    if (messages.failed()) throw CannotWrite(fmt::format("cannot write: {}", messages.words("")), path);
   }
+  if (checked.error() != 0)
+    throw CannotWrite(fmt::format("cannot write '{}': {}", path, std::strerror(checked.error())), path);
+  if (MemoryFile::serves(kind)) return write_file(path, memory.bytes(), overwrite);
   file.commit();
 }
 

@@ -7,15 +7,15 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
-#include <string_view>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
+#include "retalho/raster/checked_files.h"
 #include "retalho/raster/gdal.h"
 
 namespace retalho {
@@ -105,46 +105,22 @@ void make_layer(const std::string& file, const std::string& path, const std::str
                       path);
 }
 
-/// A file of GDAL's in memory, gone with this object.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& ending) {
-    static std::atomic<unsigned> count{0};
-    name_ = fmt::format("/vsimem/retalho-{}{}", count++, ending);
-  }
-  ~MemoryFile() { VSIUnlink(name_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const std::string& name() const { return name_; }
-  std::string_view bytes() const {
-    vsi_l_offset size = 0;
-    const GByte* const data = VSIGetMemFileBuffer(name_.c_str(), &size, FALSE);
-    return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : static_cast<std::size_t>(size)};
-  }
-
- private:
-  std::string name_;
-};
-
-/// GDAL's text writers (3.6) do not look at what a write returns: on a full disk they leave a part of the file and
-/// say nothing. Their bytes go through our own writer.
-bool writes_unchecked(const std::string& driver) {
-  return driver == "GeoJSON" || driver == "DXF";
-}
-
 void write_layer(const std::string& path, const std::string& layer_name, OGRwkbGeometryType type, const Georef& georef,
                  bool overwrite, const std::function<void(LayerWriter&)>& fill) {
   register_gdal();
   const std::string driver = driver_of(path);
   AtomicFile file(path, overwrite);  // before the work, so that a name which cannot be written is said at once
-  if (writes_unchecked(driver)) {
+  if (MemoryFile::serves(driver)) {
     const MemoryFile memory(fs::path(path).extension().string());
     make_layer(memory.name(), path, driver, layer_name, type, georef, fill);
     write_file(path, memory.bytes(), overwrite);
     return;
   }
-  make_layer(file.temporary(), path, driver, layer_name, type, georef, fill);
+  const CheckedFiles checked;
+  const std::string name = CheckedFiles::serves(driver) ? checked.name(file.temporary()) : file.temporary();
+  make_layer(name, path, driver, layer_name, type, georef, fill);
+  if (checked.error() != 0)
+    throw CannotWrite(fmt::format("cannot write '{}': {}", path, std::strerror(checked.error())), path);
   file.commit();
 }
 

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
+#include "retalho/raster/checked_files.h"
 #include "retalho/raster/gdal.h"
 #include "retalho/raster/io.h"
 
@@ -184,13 +186,17 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
     throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
                                   messages.words("a creation option is wrong")),
                       path);
-  make(driver, file.temporary(), raster, options, messages, context);
+  const CheckedFiles checked;
+  const bool counted = CheckedFiles::serves(driver.GetDescription());
+  make(driver, counted ? checked.name(file.temporary()) : file.temporary(), raster, options, messages, context);
+  if (checked.error() != 0)
+    throw CannotWrite(fmt::format("cannot write '{}': {}", path, std::strerror(checked.error())), path);
   if (messages.failed() || !fs::exists(file.temporary(), ec))
     throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
                                   messages.words("no reason was given")),
                       path);
   check_voids(raster, file.temporary(), path);
-  for (const std::string& old : leftovers) fs::remove(old, ec);
+  for (const std::string& old : leftovers) file.supersede(old);
   file.commit();
 }
 

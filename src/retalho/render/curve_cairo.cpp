@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
+#include <string>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
@@ -149,11 +151,21 @@ void draw_all(const CurvePicture& picture, cairo_surface_t* surface, double zoom
     throw CannotWrite(fmt::format("cannot draw: {}", cairo_status_to_string(status)), path);
 }
 
+/// Cairo's own files do not say when the disk is full: its bytes go through our writer.
+cairo_status_t append(void* bytes, const unsigned char* data, unsigned int size) {
+  try {
+    static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), size);
+  } catch (const std::bad_alloc&) {  // not through C code
+    return CAIRO_STATUS_NO_MEMORY;
+  }
+  return CAIRO_STATUS_SUCCESS;
+}
+
 void write_with_cairo(const CurvePicture& picture, const std::string& path, bool pdf, bool overwrite) {
-  AtomicFile file(path, overwrite);
+  std::string bytes;
   const int width = static_cast<int>(picture.panels.size()) * picture.panel_width, height = picture.panel_height;
   constexpr int kZoom = 2;  // PNG: two device pixels a picture pixel, for sharp lines
-  const Surface surface(pdf ? cairo_pdf_surface_create(file.temporary().c_str(), width, height)
+  const Surface surface(pdf ? cairo_pdf_surface_create_for_stream(append, &bytes, width, height)
                             : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width * kZoom, height * kZoom),
                         cairo_surface_destroy);
   cairo_status_t status = CAIRO_STATUS_SUCCESS;
@@ -166,11 +178,11 @@ void write_with_cairo(const CurvePicture& picture, const std::string& path, bool
     status = cairo_surface_status(surface.get());
   } else {
     draw_all(picture, surface.get(), kZoom, path);
-    status = cairo_surface_write_to_png(surface.get(), file.temporary().c_str());
+    status = cairo_surface_write_to_png_stream(surface.get(), append, &bytes);
   }
   if (status != CAIRO_STATUS_SUCCESS)
     throw CannotWrite(fmt::format("cannot write: {}", cairo_status_to_string(status)), path);
-  file.commit();
+  write_file(path, bytes, overwrite);
 }
 
 }  // namespace

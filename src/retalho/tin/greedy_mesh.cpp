@@ -32,7 +32,7 @@ Mesh::Mesh(int columns, int rows, int quarter, const std::vector<Cell>& hull)
   ids_a_quarter_ = static_cast<std::uint32_t>(2 * quarter * quarter);
   used_.assign(quarters, 0);
   const std::size_t ids = first_quarter_ + quarters * ids_a_quarter_;
-  if (ids >= (std::size_t{1} << 30)) throw std::bad_alloc();  // a link holds 30 bits of id
+  if (ids >= (std::size_t{1} << 30)) throw TooManyCells();  // a link holds 30 bits of id
   bytes_ = ids * sizeof(Record);
   void* memory = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();

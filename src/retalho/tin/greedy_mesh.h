@@ -37,6 +37,8 @@ struct Cavity {
   void grow();
 };
 
+struct TooManyCells {};  // for 30 bits of id; thrown by Mesh
+
 class Mesh {
  public:
   /// `hull`: corners of the convex hull, area2 > 0 around; `quarter`: cells a side of a quarter tile.

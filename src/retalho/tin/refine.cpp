@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <new>
-
 #include "retalho/core/error.h"
 #include "retalho/tin/greedy_heap.h"
+#include "retalho/tin/greedy_mesh.h"
 #include "retalho/tin/greedy_tiles.h"
 
 namespace retalho {
@@ -15,7 +14,8 @@ GridTin refine_grid(const Raster& raster, const RefineOptions& options, const Co
     throw UsageError(fmt::format("the largest error must be 0 or more, not {}", options.max_error), {}, "max_error");
   try {
     return refine_grid_in_tiles(raster, options, context);
-  } catch (const std::bad_alloc&) {  // no address space for the tiles' records: the plain way needs less
+  } catch (
+      const greedy::TooManyCells&) {  // not where memory is short: the same input gives the same bytes, or an error
     return refine_grid_by_heap(raster, options, context);
   }
 }
