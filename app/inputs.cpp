@@ -14,6 +14,11 @@
 namespace retalho::app {
 namespace {
 
+std::string& input() {
+  static std::string path;
+  return path;
+}
+
 /// The number at the start of `text`, which must be finite; moves `text` behind it. nullopt when there is none.
 std::optional<double> take_number(const char*& text) {
   char* end = nullptr;
@@ -25,6 +30,13 @@ std::optional<double> take_number(const char*& text) {
 
 }  // namespace
 
+void note_input(const std::string& path) {
+  input() = path;
+}
+const std::string& noted_input() {
+  return input();
+}
+
 void add_grid_flags(CLI::App& command, GridFlags& flags) {
   command.add_option("--band", flags.band, "Band of the raster, from 1")->type_name("N")->check(CLI::PositiveNumber);
   command.add_option("--nodata", flags.nodata, "Heights equal to this are void too")->type_name("V");
@@ -32,6 +44,7 @@ void add_grid_flags(CLI::App& command, GridFlags& flags) {
 
 Raster load_grid(const Program& program, const std::string& path, const GridFlags& flags, RasterSummary& summary,
                  const Context& context) {
+  note_input(path);
   ReadNotes notes;
   const Stopwatch watch;
   Raster raster = read_raster(path, {flags.band, flags.nodata}, &notes, context);
@@ -44,6 +57,7 @@ Raster load_grid(const Program& program, const std::string& path, const GridFlag
 
 PointCloud load_points(const Program& program, const std::string& path, const PointOptions& options,
                        const Context& context) {
+  note_input(path);
   PointNotes notes;
   const Stopwatch watch;
   PointCloud cloud = read_points(path, options, &notes, context);
@@ -62,6 +76,7 @@ bool takes_points(const std::string& path, const PointOptions& options) {
 }
 
 Model load_any_model(const std::string& path) {
+  note_input(path);
   if (std::filesystem::exists(path) && !is_model_file(path))
     throw CannotRead(fmt::format("'{}' is not a model file of retalho: make one with `retalho fit`", path), path);
   return load_model(path);

@@ -14,6 +14,11 @@
 
 namespace retalho::app {
 
+/// The file that is being worked on: main names it in errors of steps that know no files (a triangulation of points on
+/// one line). The loaders of this header note theirs.
+void note_input(const std::string& path);
+const std::string& noted_input();
+
 /// Options of the commands that read an elevation grid.
 struct GridFlags {
   int band = 1;

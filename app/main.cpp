@@ -7,6 +7,7 @@
 #include <iterator>
 #include <new>
 
+#include "inputs.h"
 #include "program.h"
 #include "progress.h"
 #include "retalho/core/error.h"
@@ -81,6 +82,16 @@ int fail(bool json, int code, const char* kind, const std::string& message, cons
   return code;
 }
 
+/// Errors about inputs name the file, whichever step found them.
+int fail(bool json, const Error& error) {
+  std::string message = error.what(), file = error.file();
+  const bool about_input = error.kind() == Error::Kind::bad_input || error.kind() == Error::Kind::cannot_read;
+  if (about_input && file.empty()) file = noted_input();
+  if (about_input && !file.empty() && message.find(file) == std::string::npos)
+    message = fmt::format("'{}': {}", file, message);
+  return fail(json, error.exit_code(), kind_name(error.kind()), message, file, error.where());
+}
+
 int run(int argc, char** argv) {
   catch_signals();
   const bool json = std::any_of(argv + 1, argv + argc, [](const char* a) { return std::strcmp(a, "--json") == 0; });
@@ -110,7 +121,7 @@ int run(int argc, char** argv) {
     end_progress();
     return 0;
   } catch (const Error& error) {
-    return fail(json, error.exit_code(), kind_name(error.kind()), error.what(), error.file(), error.where());
+    return fail(json, error);
   } catch (const std::bad_alloc&) {
     return internal("out of memory: the work does not fit; try a smaller input or a larger tolerance");
   } catch (const std::exception& error) {

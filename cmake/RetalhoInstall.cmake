@@ -19,10 +19,15 @@ install(TARGETS retalho EXPORT retalho_targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 if(TARGET retalho_program)
   # A shared library is found beside the program, wherever the tree is put.
-  set_target_properties(retalho_program PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")  # where the loader looks anyway
+    set_target_properties(retalho_program PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  endif()
   install(TARGETS retalho_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
 endif()
-install(FILES LICENSE NOTICE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT library)
+if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")  # there packaging/copyright stands for them
+  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT library)
+endif()
+install(FILES NOTICE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT library)
 
 # What a static library leaves to the consumer's link: found again by the consumer, never as a path of this machine. It is
 # read off the library, so that a new one needs a line here only for the name of its pkg-config module.
@@ -68,5 +73,7 @@ install(EXPORT retalho_targets NAMESPACE retalho:: FILE retalho-targets.cmake DE
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/retalho-config.cmake" "${CMAKE_CURRENT_BINARY_DIR}/retalho-config-version.cmake"
   DESTINATION "${package_folder}" COMPONENT development)
 
+file(RELATIVE_PATH RETALHO_PREFIX_FROM_PC "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")  # lib may be lib/x86_64-linux-gnu
+string(REGEX REPLACE "/$" "" RETALHO_PREFIX_FROM_PC "${RETALHO_PREFIX_FROM_PC}")
 configure_file(cmake/retalho.pc.in retalho.pc @ONLY)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/retalho.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "inputs.h"
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/curve/bspline.h"
@@ -221,6 +222,7 @@ void draw(const std::vector<NamedCurve>& curves, const std::string& path, const 
 }  // namespace
 
 std::vector<NamedCurve> load_curves(const std::string& file, const CurveWork& work, const Program& program) {
+  note_input(file);
   if (!work.convert.empty()) choose("--convert", work.convert, {"bezier", "bspline", "hermite", "power"});
   if (work.flatten < 0) throw UsageError("--flatten: the tolerance must be positive", {}, "--flatten");
   const Context context = program.context();

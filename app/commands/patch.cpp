@@ -40,6 +40,7 @@ bool ends_with(const std::string& path, const char* ending) {
 
 std::vector<Patch> from_mesh(const Program& program, const Options& options, Recovery recovery,
                              const Context& context) {
+  note_input(options.input);
   const TriangleMesh mesh = read_mesh(options.input);
   ParameterizeOptions made;
   made.weights = static_cast<Weights>(choose("--parameters", options.weights, {"shape-preserving", "mean-value"}));
@@ -68,6 +69,7 @@ std::vector<Patch> make_patches(const Program& program, const Options& options, 
   made.recovery = static_cast<Recovery>(choose("--recovery", options.recovery, {"barycentric", "spr", "smooth"}));
   made.layout = static_cast<DomainLayout>(choose("--layout", options.layout, {"delaunay", "midpoint"}));
   if (is_model_file(options.input)) {  // as it was saved
+    note_input(options.input);
     Model model = load_model(options.input);
     if (auto* set = std::get_if<PatchSet>(&model)) return std::move(set->patches);
     throw BadInput(fmt::format("'{}' holds no patches", options.input), options.input);
@@ -78,6 +80,7 @@ std::vector<Patch> make_patches(const Program& program, const Options& options, 
     throw UsageError("--divisions: expected one number, or three with commas", {}, "--divisions");
   const PatchOptions defaults = made;
   std::vector<Patch> patches;
+  note_input(options.input);
   for (const PatchSpec& spec : read_patches(options.input, placement)) {
     context.check();
     made = defaults;

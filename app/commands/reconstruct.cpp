@@ -48,6 +48,7 @@ void complete_normals(const Program& program, PointCloud& cloud, int neighbours,
 
 /// A document of quadrics at vertices: nothing to fit.
 void run_document(const Program& program, const Options& options, const Context& context) {
+  note_input(options.points);
   const TetraQuad surface = read_quadrics(options.points);
   const TetraQuadField field(surface);
   const TriangleMesh mesh = mesh_tetraquad(field, {.tolerance = options.tolerance}, nullptr, context);

@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 
-#include "sight_line.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
@@ -15,6 +14,7 @@
 #include "retalho/visibility/line_of_sight.h"
 #include "retalho/visibility/surface_viewshed.h"
 #include "retalho/visibility/viewshed.h"
+#include "sight_line.h"
 
 namespace retalho::app {
 namespace {

@@ -43,7 +43,8 @@ const std::vector<KindKeys>& kinds() {
 double number(const Json& v, const std::string& where) {
   if (!v.is_number()) fail(where, fmt::format("expected a number, got {}", v.type_name()));
   const double d = v.get<double>();
-  if (!std::isfinite(d)) fail(where, "the number is too large");
+  // Squares and cubes of lengths have to stay finite.
+  if (!(std::abs(d) <= 1e100)) fail(where, fmt::format("the number {} is too large: scale the curves below 1e100", d));
   return d;
 }
 

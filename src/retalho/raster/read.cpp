@@ -151,6 +151,13 @@ Placement place(GDALDataset& dataset, const std::string& name, Raster& raster, R
                                "north-up first (gdalwarp)",
                                name, gt[0], gt[1], gt[2], gt[3], gt[4], gt[5]),
                    name, "geotransform");
+  const double reach_x = std::max(std::abs(gt[0]), std::abs(gt[0] + raster.columns * gt[1]));
+  const double reach_y = std::max(std::abs(gt[3]), std::abs(gt[3] + raster.rows * gt[5]));
+  constexpr double kDigits = 1e-13;  // of double's 1.1e-16: cells keep three digits of their size
+  if (!(std::abs(gt[1]) > kDigits * reach_x && std::abs(gt[5]) > kDigits * reach_y))
+    throw BadInput(fmt::format("'{}': cells of {} x {} cannot be told apart at ({}, {}): the geotransform is damaged",
+                               name, std::abs(gt[1]), std::abs(gt[5]), gt[0], gt[3]),
+                   name, "geotransform");
   placement.flip_columns = gt[1] < 0;
   placement.flip_rows = gt[5] > 0;
   const double column = placement.flip_columns ? raster.columns - 0.5 : 0.5;
@@ -263,8 +270,10 @@ class BandReader {
     // A NaN that nothing equals stands for "no such rule".
     const float first = rule_.stored ? as_float(*rule_.stored) : kVoid,
                 second = rule_.height ? as_float(*rule_.height) : kVoid;
-    std::vector<float> heights(cells_);
+    std::vector<float> heights;
+    heights.reserve(cells_);  // address space; pages are taken as rows arrive, so a false claim costs nothing
     by_block_rows(band_, sizeof(float), context_, [&](int row, int rows) {
+      heights.resize(static_cast<std::size_t>(row + rows) * columns_);
       float* const start = heights.data() + static_cast<std::size_t>(row) * columns_;
       fetch(band_, row, rows, start, GDT_Float32);
       fetch_mask(row, rows);

@@ -188,7 +188,8 @@ void write_with_cairo(const CurvePicture& picture, const std::string& path, bool
 }  // namespace
 
 void write_picture(const CurvePicture& picture, const std::string& path, bool overwrite) {
-  if (picture.panels.empty()) throw UsageError("there is nothing to draw", path);
+  if (picture.panels.empty())
+    throw BadInput("there is nothing to draw: the curves are empty, or an implicit curve has no point in its box");
   if (path.ends_with(".svg")) return write_file(path, to_svg(picture), overwrite);
   if (path.ends_with(".pdf")) return write_with_cairo(picture, path, true, overwrite);
   if (path.ends_with(".png")) return write_with_cairo(picture, path, false, overwrite);

@@ -161,7 +161,8 @@ void fit_panel(PicturePanel& panel) {
     for (const Vec2 q : p.path.points) take(q);
   for (const PictureDot& d : panel.dots) take(d.at);
   for (const PictureBox& b : panel.boxes) take(b.low), take(b.high);
-  if (!any) throw UsageError("there is nothing to draw");
+  if (!any)
+    throw BadInput("there is nothing to draw: the curves are empty, or an implicit curve has no point in its box");
   Vec2 size = high - low;
   const double least = std::max({size.x, size.y, 1e-12 * (std::abs(high.x) + std::abs(high.y)), 1e-300});
   if (!(size.x > 1e-9 * least) || (!panel.stretch && size.x < 0.05 * least))
