@@ -16,7 +16,7 @@ void expect_none(const house::Breaches& breaches) {
 TEST(House, TheListOfRoomsIsTheArchitectures) {
   const auto rooms = house::rooms_of(kSource / "docs" / "architecture.md");
   EXPECT_EQ(fmt::format("{}", fmt::join(rooms, " ")),
-            "core bernstein curve raster cloud tin terrain level visibility patch tetraquad mesh model render");
+            "core bernstein raster cloud curve tin terrain level visibility patch tetraquad mesh model render");
 }
 
 TEST(House, NoRoomUsesARoomBelowIt) {
