@@ -8,6 +8,7 @@
 #include "curve_calls.h"
 #include "guard.h"
 #include "page.h"
+#include "patch_calls.h"
 #include "retalho/core/error.h"
 #include "terrain_calls.h"
 #include "work.h"
@@ -57,6 +58,7 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
   CallTable table;
   add_terrain_calls(table, inputs);
   add_curve_calls(table);
+  add_patch_calls(table);
   Workers workers(std::move(table), threads);
   Guard guard;
   guard.token = make_token();

@@ -4,6 +4,8 @@ import {firstCurves, PRESETS} from './curves/state';
 import {CurvesView} from './curves/view';
 import {download, make} from './dom';
 import {History} from './history';
+import {firstPatches, PATCH_PRESETS} from './patches/state';
+import {PatchesView} from './patches/view';
 import {startPage} from './start';
 import {decoded, encoded, merged, type PageState, type ViewName} from './state';
 import {Tasks} from './tasks';
@@ -11,7 +13,7 @@ import {firstLook, type FileInfo} from './terrain/state';
 import {TerrainView} from './terrain/view';
 import './style.css';
 
-const VIEWS: [ViewName, string][] = [['start', 'Start'], ['terrain', 'Terrain'], ['curves', 'Curves']];
+const VIEWS: [ViewName, string][] = [['start', 'Start'], ['terrain', 'Terrain'], ['curves', 'Curves'], ['patches', 'Triangular surfaces']];
 const page = document.getElementById('page') as HTMLElement;
 
 function fail(words: string): void {
@@ -40,24 +42,26 @@ async function start(): Promise<void> {
   } catch (error) {
     return fail(error instanceof CallError ? `${error.message}.` : String(error));
   }
-  const first: PageState = {theme: 'auto', view: given ? 'terrain' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves()};
+  const first: PageState = {theme: 'auto', view: given ? 'terrain' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves(), patches: firstPatches()};
   const history = new History<PageState>(linkedState(first));
   if (!files[history.state.terrain.file]) history.change((s) => { s.terrain = first.terrain; }, {silent: true});
 
   const tasks = new Tasks(() => showStatus());
-  let terrain: TerrainView;
+  let terrain: TerrainView, patches: PatchesView;
   try {
     terrain = new TerrainView(files, history.state.terrain,
       (change, group) => history.change((s) => change(s.terrain), {group}), tasks,
       (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
       (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true}));
+    patches = new PatchesView(history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks);
   } catch {
     return fail('This browser gives no WebGL 2 here, which the pictures need. Another browser, or its hardware acceleration, may help.');
   }
   const curves = new CurvesView(history.state.curves, (change, options) => history.change((s) => change(s.curves), options), tasks);
   const starting = startPage(files,
     (file) => history.change((s) => { s.view = 'terrain'; if (s.terrain.file !== file) s.terrain = firstLook(file, files[file]); }),
-    (preset) => { curves.open(PRESETS[preset][1]); go('curves'); });
+    (preset) => { curves.open(PRESETS[preset][1]); go('curves'); },
+    (preset) => { patches.open(PATCH_PRESETS[preset][1]); go('patches'); });
 
   function go(view: ViewName): void {
     history.change((s) => { s.view = view; }, {silent: true});
@@ -87,8 +91,9 @@ async function start(): Promise<void> {
     note('The address of this tab now holds what is shown: it restores it in this tab, while the program runs.');
   }}, 'Link');
   const picture = make('button', {type: 'button', click: async () => {
-    const blob = await terrain.scene.picture();
-    if (blob) download('terrain.png', blob);
+    const {view} = history.state;
+    const blob = await (view === 'patches' ? patches : terrain).scene.picture();
+    if (blob) download(`${view}.png`, blob);
   }}, 'Save picture');
   const save = make('button', {type: 'button', title: 'What is shown, as a file that Open view reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
   const input: HTMLInputElement = make('input', {type: 'file', class: 'open-view', accept: '.json', hidden: true, change: async () => {
@@ -105,8 +110,8 @@ async function start(): Promise<void> {
   }});
   const open = make('button', {type: 'button', click: () => input.click()}, 'Open view');
   const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, make('span', {class: 'gap'}), status, cancel, make('span', {class: 'gap'}), link, save, open, input, picture, theme);
-  const aside = make('aside', {}, terrain.controls.element, curves.element);
-  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage));
+  const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element);
+  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage));
 
   let noted = '';
   function note(words: string): void {
@@ -141,9 +146,10 @@ async function start(): Promise<void> {
     page.dataset.view = state.view;
     starting.hidden = state.view !== 'start';
     aside.hidden = state.view === 'start';
-    picture.hidden = state.view !== 'terrain';
+    picture.hidden = state.view === 'start' || state.view === 'curves';
     terrain.show(state.terrain, state.view === 'terrain');
     curves.show(state.curves, state.view === 'curves');
+    patches.show(state.patches, state.view === 'patches');
   }
   history.listen(show);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);

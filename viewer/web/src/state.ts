@@ -1,14 +1,16 @@
 // The state of the whole page, as a link and a saved file hold it.
 import type {CurvesState} from './curves/state';
+import type {PatchesState} from './patches/state';
 import type {TerrainState} from './terrain/state';
 
-export type ViewName = 'start' | 'terrain' | 'curves';
+export type ViewName = 'start' | 'terrain' | 'curves' | 'patches';
 
 export interface PageState {
   theme: 'auto' | 'light' | 'dark';
   view: ViewName;
   terrain: TerrainState;
   curves: CurvesState;
+  patches: PatchesState;
 }
 
 /** The values of `given` where they are of the kind that `first` has. */

@@ -4,6 +4,7 @@ import {splitEvents, unpack} from '../src/api';
 import {addPoint, clipped, clippedPath, firstCurves, growable, PRESETS, removePoint} from '../src/curves/state';
 import {say} from '../src/dom';
 import {History} from '../src/history';
+import {editable, firstPatches, handles, movePoint, PATCH_PRESETS, robustRange} from '../src/patches/state';
 import {rampBytes, rampColour} from '../src/ramps';
 import {decoded, encoded, merged} from '../src/state';
 import {ticks} from '../src/terrain/profile';
@@ -137,4 +138,40 @@ test('a link holds the state, and wrong values in it are left out', () => {
   assert.deepEqual(merged({a: 0, inner: {on: false}}, {a: 'x', inner: 5, other: 1}), {a: 0, inner: {on: false}});
   const curves = firstCurves();
   assert.deepEqual(merged(curves, decoded(encoded(curves))), curves);
+});
+
+test('a corner of a triangular surface belongs to two sides, and moves in both', () => {
+  const {document} = firstPatches();
+  const {sides} = document.patches[0];
+  assert.equal(handles(document).length, sides.reduce((n, side) => n + side.points.length - 1, 0));
+  for (let side = 0; side < 3; ++side) {
+    movePoint(document, side, 0, [7, side, 9]);
+    movePoint(document, side, 1, [1, 2, 3]);
+    assert.deepEqual(sides[side].points[0], [7, side, 9]);
+    assert.deepEqual(sides[(side + 2) % 3].points.at(-1), [7, side, 9]);
+  }
+  movePoint(document, 1, sides[1].points.length - 1, [5, 5, 5]);
+  assert.deepEqual(sides[2].points[0], [5, 5, 5]);
+  sides.forEach((side, k) => assert.deepEqual(side.points.at(-1), sides[(k + 1) % 3].points[0]));
+});
+
+test('only patches of three written-out Bézier curves are dragged', () => {
+  assert.equal(PATCH_PRESETS.length, 3);
+  assert.equal(editable({patches: [{sides: [1, 2, 3]}]}), null);
+  assert.equal(editable({curves: []}), null);
+  assert.equal(editable(null), null);
+  const side = {kind: 'bezier', points: [[0, 0, 0], [1, 0, 0]]};
+  assert.equal(editable({patches: [{sides: [side, side, {...side, reversed: true}]}]}), null);
+  assert.equal(editable({patches: [{sides: [side, side, {kind: 'bezier', points: [[0, 0]]}]}]}), null);
+  assert.deepEqual(editable({patches: [{sides: [side, side, side]}]})?.patches[0].sides[2], side);
+});
+
+test('a legend leaves out the wildest values and keeps 0 in the middle', () => {
+  const values = Float32Array.from({length: 1000}, (_, k) => k / 1000 - 0.25);
+  values[0] = -1e9;
+  values[1] = NaN;
+  const [low, high] = robustRange(values, true);
+  assert.equal(low, -high);
+  assert.ok(high > 0.6 && high < 0.76);
+  assert.deepEqual(robustRange(new Float32Array(0), true), [0, 1]);
 });

@@ -58,7 +58,7 @@ const RAMP_OF: Record<keyof typeof MODES, RampName> = {heights: 'heights', error
 export const rampOf = (colour: keyof typeof MODES): RampName => RAMP_OF[colour];
 
 const ramps = new Map<RampName, DataTexture>();
-function rampTexture(name: RampName): DataTexture {
+export function rampTexture(name: RampName): DataTexture {
   let texture = ramps.get(name);
   if (!texture) {
     texture = new DataTexture(rampBytes(name), 256, 1, RGBAFormat, UnsignedByteType);

@@ -1,0 +1,66 @@
+// Figures of the page, printed and never asserted; the last line is {"value": number}.
+//
+//   node tests/viewer/page/measure.mjs first-picture   seconds from the start of `retalho view` on 1,201 x 1,201 cells to the
+//                                                      first picture in Chromium (software WebGL; the browser runs already)
+//   node tests/viewer/page/measure.mjs drag            milliseconds of computing a frame while a side is dragged at n = 64,
+//                                                      the median of 200
+import {spawn} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {chromiumDriver, findChromium, program, writeHills} from './support.mjs';
+
+function serve(args) {
+  const server = spawn(program, ['view', '--no-browser', '--json', '--quiet', ...args], {stdio: ['ignore', 'pipe', 'inherit']});
+  return new Promise((resolve) => {
+    let text = '';
+    server.stdout.on('data', (data) => {
+      text += data;
+      if (text.includes('}')) resolve({server, address: JSON.parse(text).address});
+    });
+  });
+}
+
+async function firstPicture() {
+  const folder = mkdtempSync(join(tmpdir(), 'retalho-measure-'));
+  const dem = join(folder, 'hills.asc');
+  writeHills(dem, 1201, 1201);
+  const context = await chromiumDriver().launchPersistentContext(join(folder, 'profile'), {executablePath: findChromium(), headless: true, viewport: {width: 1280, height: 800},
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage']});
+  const page = await context.newPage();
+  const begun = performance.now();
+  const {server, address} = await serve([dem]);
+  await page.goto(address);
+  await page.waitForSelector('.overlay dl dd');
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const seconds = (performance.now() - begun) / 1000;
+  await context.close();
+  server.kill('SIGINT');
+  rmSync(folder, {recursive: true, force: true});
+  return seconds;
+}
+
+async function drag() {
+  const {server, address} = await serve([]);
+  const {origin, hash} = new URL(address);
+  const document = JSON.parse(readFileSync(fileURLToPath(new URL('../../../examples/patches/saddle.json', import.meta.url)), 'utf8'));
+  const times = [];
+  for (let k = 0; k < 210; ++k) {
+    document.patches[0].sides[0].points[1][2] = 0.55 + 0.3 * Math.sin(k / 20);
+    const response = await fetch(origin + '/api/patches/compute', {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Retalho-Token': hash.slice('#token='.length)},
+      body: JSON.stringify({document, divisions: 64, recovery: 'smooth', colour: 'none', dragging: true})});
+    const bytes = Buffer.from(await response.arrayBuffer());
+    const header = JSON.parse(bytes.subarray(8, 8 + bytes.readUInt32LE(4)).toString());
+    if (k >= 10) times.push(1000 * header.words.seconds);
+  }
+  server.kill('SIGINT');
+  times.sort((a, b) => a - b);
+  console.log(`median ${times[100].toFixed(2)} ms, worst ${times[199].toFixed(2)} ms`);
+  return times[100];
+}
+
+const what = {'first-picture': firstPicture, drag}[process.argv[2]];
+if (!what) throw new Error('say first-picture or drag');
+console.log(JSON.stringify({value: await what()}));
+process.exit(0);

@@ -1,0 +1,271 @@
+// The picture of a triangular surface: the surface, its three curves, their control points to drag, the cursor.
+import {BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Scene, ShaderMaterial, SphereGeometry, Vector2, Vector3, WebGLRenderer, WireframeGeometry} from 'three';
+import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import type {Answer} from '../api';
+import {make} from '../dom';
+import {rampTexture} from '../terrain/shaders';
+import {handles, type PatchesState, type Style, type Vec3} from './state';
+
+const VERTEX = `
+in vec2 parameters;
+in float value;
+out vec3 up;
+out vec3 eye;
+out vec2 uv2;
+out float v;
+void main() {
+  up = normalMatrix * normal;
+  vec4 p = modelViewMatrix * vec4(position, 1.0);
+  eye = -p.xyz;
+  uv2 = parameters;
+  v = value;
+  gl_Position = projectionMatrix * p;
+}`;
+
+const FRAGMENT = `
+precision highp float;
+in vec3 up;
+in vec3 eye;
+in vec2 uv2;
+in float v;
+out vec4 colour;
+uniform int style;
+uniform sampler2D ramp;
+uniform vec2 range;
+uniform bool flatFaces;
+float stripe(float x) {
+  float w = fwidth(x) * 0.75;
+  float f = abs(fract(x) - 0.5);
+  return smoothstep(0.25 - w, 0.25 + w, f);
+}
+float line(float x) {
+  float f = abs(fract(x - 0.5) - 0.5) / fwidth(x);
+  return 1.0 - smoothstep(0.6, 1.5, f);
+}
+void main() {
+  vec3 e = normalize(eye);
+  vec3 n = flatFaces ? normalize(cross(dFdx(eye), dFdy(eye))) : normalize(up);
+  if (dot(n, e) < 0.0) n = -n;
+  vec3 base = vec3(0.79, 0.75, 0.66);
+  if (style >= 4) base = texture(ramp, vec2(clamp((v - range.x) / (range.y - range.x), 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
+  float light = 0.35 + 0.65 * max(dot(n, normalize(vec3(0.35, 0.55, 0.8))), 0.0);
+  if (style == 2) base = mix(vec3(0.1), vec3(0.97), stripe(5.0 * (reflect(-e, n).y + 1.0)));
+  if (style == 3) base = mix(vec3(0.12, 0.3, 0.45), vec3(0.95), stripe(8.0 * dot(n, normalize(vec3(0.35, 0.55, 0.8)))));
+  if (style == 2 || style == 3) light = 0.75 + 0.25 * light;
+  if (style == 1) {
+    base = mix(base, vec3(0.7, 0.12, 0.1), line(uv2.x * 12.0));
+    base = mix(base, vec3(0.1, 0.35, 0.6), line(uv2.y * 12.0));
+    base = mix(base, vec3(0.1, 0.45, 0.2), line((1.0 - uv2.x - uv2.y) * 12.0));
+  }
+  colour = vec4(base * light, 1.0);
+}`;
+
+const STYLES: Style[] = ['light', 'lines', 'zebra', 'isophotes', 'error', 'gaussian', 'mean'];
+
+export interface PatchSceneEvents {
+  drag(side: number, index: number, to: Vec3): void;
+  dropped(): void;
+  hover(uv: [number, number] | null): void;
+  cameraMoved(camera: number[]): void;
+}
+
+export class PatchScene {
+  readonly canvas = make('canvas', {tabindex: 0, 'aria-label': 'The surface. Drag a point to move it; drag elsewhere to turn, right drag moves, the wheel zooms.'});
+  private readonly renderer: WebGLRenderer;
+  private readonly camera = new PerspectiveCamera(35, 1, 0.01, 1000);
+  private readonly scene = new Scene();
+  private readonly controls: OrbitControls;
+  private readonly raycaster = new Raycaster();
+  private readonly material = new ShaderMaterial({glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    uniforms: {style: {value: 0}, ramp: {value: rampTexture('difference')}, range: {value: new Vector2(0, 1)}, flatFaces: {value: false}}});
+  private readonly surface = new Mesh(new BufferGeometry(), this.material);
+  private readonly wires = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x1c2329, transparent: true, opacity: 0.4}));
+  private readonly sides = [0x2a8ac4, 0xd5700a, 0x0a9e76].map((color) => new Line(new BufferGeometry(), new LineBasicMaterial({color, linewidth: 2})));
+  private readonly polygons = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x808890}));
+  private readonly dots = new Group();
+  private readonly cursor = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffb000}));
+  private held: {side: number; index: number; plane: Plane} | null = null;
+  private dirty = true;
+  private shown = false;
+
+  constructor(private element: HTMLElement, private events: PatchSceneEvents) {
+    this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true});
+    this.camera.up.set(0, 0, 1);
+    element.append(this.canvas);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.addEventListener('change', () => this.redraw());
+    this.controls.addEventListener('end', () => events.cameraMoved([...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => Number(v.toPrecision(7)))));
+    this.cursor.visible = false;
+    for (const object of [this.surface, this.wires, this.polygons, ...this.sides]) object.frustumCulled = false;
+    this.scene.add(this.surface, this.wires, this.polygons, this.dots, this.cursor, ...this.sides);
+    this.canvas.addEventListener('pointerdown', (event) => this.down(event), {capture: true});
+    this.canvas.addEventListener('pointermove', (event) => this.moved(event));
+    this.canvas.addEventListener('pointerup', () => this.up());
+    this.canvas.addEventListener('pointercancel', () => this.up());
+    this.canvas.addEventListener('pointerleave', () => events.hover(null));
+    new ResizeObserver(() => this.redraw()).observe(element);
+    const frame = () => {
+      requestAnimationFrame(frame);
+      if (this.dirty && this.shown) this.draw();
+    };
+    frame();
+  }
+
+  visible(on: boolean): void {
+    this.shown = on;
+    this.redraw();
+  }
+  redraw(): void {
+    this.dirty = true;
+  }
+
+  frame(centre: Vec3, size: number): void {
+    this.controls.target.set(...centre);
+    this.camera.position.set(centre[0] + 0.75 * size, centre[1] - 1.05 * size, centre[2] + 0.75 * size);
+    this.camera.near = size / 100;
+    this.camera.far = size * 50;
+    this.controls.minDistance = size / 20;
+    this.controls.maxDistance = size * 12;
+    this.controls.update();
+    this.redraw();
+  }
+  setCamera(state: number[]): void {
+    if (state.length !== 6 || !state.every(Number.isFinite)) return;
+    this.camera.position.fromArray(state);
+    this.controls.target.fromArray(state, 3);
+    this.controls.update();
+  }
+
+  takeSurface({arrays}: Answer, recovery: string): void {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(arrays.position, 3));
+    geometry.setAttribute('normal', new BufferAttribute(arrays.normal, 3));
+    geometry.setAttribute('parameters', new BufferAttribute(arrays.parameters, 2));
+    geometry.setAttribute('value', new BufferAttribute(arrays.value ?? new Float32Array(arrays.position.length / 3), 1));
+    geometry.setIndex(new BufferAttribute(arrays.index, 1));
+    this.surface.geometry.dispose();
+    this.surface.geometry = geometry;
+    this.material.uniforms.flatFaces.value = recovery === 'barycentric';
+    this.wires.geometry.dispose();
+    this.wires.geometry = this.wires.visible ? new WireframeGeometry(geometry) : new BufferGeometry();
+    const sides = arrays.sides as Float32Array, each = sides.length / 3;
+    this.sides.forEach((line, k) => {
+      line.geometry.dispose();
+      line.geometry = new BufferGeometry();
+      line.geometry.setAttribute('position', new BufferAttribute(sides.slice(k * each, (k + 1) * each), 3));
+    });
+    this.redraw();
+  }
+
+  show(state: PatchesState, size: number, range: [number, number]): void {
+    this.material.uniforms.style.value = STYLES.indexOf(state.style);
+    this.material.uniforms.ramp.value = rampTexture(state.style === 'error' ? 'amount' : 'difference');
+    (this.material.uniforms.range.value as Vector2).set(...range);
+    const wires = state.mesh && !this.wires.visible;
+    this.wires.visible = state.mesh;
+    if (wires && this.surface.geometry.getAttribute('position')) this.wires.geometry = new WireframeGeometry(this.surface.geometry);
+    this.polygons.visible = this.dots.visible = state.polygons;
+    const lines: number[] = [];
+    for (const side of state.document.patches[0].sides) for (let i = 0; i + 1 < side.points.length; ++i) lines.push(...side.points[i], ...side.points[i + 1]);
+    this.polygons.geometry.dispose();
+    this.polygons.geometry = new BufferGeometry();
+    this.polygons.geometry.setAttribute('position', new BufferAttribute(new Float32Array(lines), 3));
+    const wanted = handles(state.document);
+    while (this.dots.children.length > wanted.length) this.dots.remove(this.dots.children[this.dots.children.length - 1]);
+    while (this.dots.children.length < wanted.length) this.dots.add(new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffffff})));
+    wanted.forEach(([side, index], k) => {
+      const dot = this.dots.children[k] as Mesh;
+      const chosen = state.point !== null && state.point[0] === side && state.point[1] === index;
+      (dot.material as MeshBasicMaterial).color = new Color(chosen ? 0xffb000 : index === 0 ? 0x1c2329 : 0x6b7780);
+      dot.position.set(...state.document.patches[0].sides[side].points[index]);
+      dot.scale.setScalar(size * (index === 0 ? 0.014 : 0.011));
+      dot.userData = {side, index};
+    });
+    this.redraw();
+  }
+
+  setCursor(point: Vec3 | null, size: number): void {
+    this.cursor.visible = point !== null;
+    if (point) {
+      this.cursor.position.set(...point);
+      this.cursor.scale.setScalar(size * 0.013);
+    }
+    this.redraw();
+  }
+
+  /** Where a place is on the screen, for tests. */
+  toScreen(at: Vec3): [number, number] {
+    const box = this.canvas.getBoundingClientRect();
+    this.camera.updateMatrixWorld();
+    const p = new Vector3(...at).project(this.camera);
+    return [box.left + ((p.x + 1) / 2) * box.width, box.top + ((1 - p.y) / 2) * box.height];
+  }
+
+  picture(): Promise<Blob | null> {
+    this.draw();
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+  }
+
+  private draw(): void {
+    this.dirty = false;
+    const width = this.element.clientWidth, height = this.element.clientHeight;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    const size = this.renderer.getSize(new Vector2());
+    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setClearColor(getComputedStyle(this.element).getPropertyValue('--sky').trim() || '#e8edf2');
+    this.renderer.render(this.scene, this.camera);
+    // Where the points lie in the picture: for whoever cannot see it, and for tests.
+    this.canvas.dataset.handles = JSON.stringify((this.dots.children as Mesh[]).map((dot) => this.toScreen(dot.position.toArray() as Vec3).map(Math.round)));
+  }
+
+  private aim(event: PointerEvent): void {
+    const box = this.canvas.getBoundingClientRect();
+    this.raycaster.setFromCamera(new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), this.camera);
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.button !== 0 || !this.dots.visible) return;
+    this.aim(event);
+    // A finger or a mouse that is a little beside the point means it all the same: the nearest within 14 pixels.
+    let best: Mesh | null = null, nearest = 14;
+    for (const dot of this.dots.children as Mesh[]) {
+      const [x, y] = this.toScreen(dot.position.toArray() as Vec3), d = Math.hypot(x - event.clientX, y - event.clientY);
+      if (d < nearest) { nearest = d; best = dot; }
+    }
+    if (!best) return;
+    event.stopImmediatePropagation();
+    const {side, index} = best.userData as {side: number; index: number};
+    this.canvas.setPointerCapture(event.pointerId);
+    this.held = {side, index, plane: new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), best.position)};
+    this.controls.enabled = false;
+    this.events.drag(side, index, best.position.toArray() as Vec3);
+  }
+
+  private moved(event: PointerEvent): void {
+    this.aim(event);
+    if (this.held) {
+      const at = this.raycaster.ray.intersectPlane(this.held.plane, new Vector3());
+      if (at) this.events.drag(this.held.side, this.held.index, at.toArray().map((v) => Number(v.toPrecision(7))) as Vec3);
+      return;
+    }
+    if (event.buttons !== 0 || !this.surface.geometry.getAttribute('position')) return;
+    const hit = this.raycaster.intersectObject(this.surface, false)[0];
+    if (!hit?.face) return this.events.hover(null);
+    const parameters = this.surface.geometry.getAttribute('parameters'), positions = this.surface.geometry.getAttribute('position');
+    const {a, b, c} = hit.face, [pa, pb, pc] = [a, b, c].map((i) => new Vector3().fromBufferAttribute(positions as BufferAttribute, i));
+    const area = (p: Vector3, q: Vector3, r: Vector3) => q.clone().sub(p).cross(r.clone().sub(p)).length();
+    const whole = area(pa, pb, pc) || 1, weights = [area(hit.point, pb, pc) / whole, area(pa, hit.point, pc) / whole, area(pa, pb, hit.point) / whole];
+    const at = (get: (i: number) => number) => weights[0] * get(a) + weights[1] * get(b) + weights[2] * get(c);
+    this.events.hover([at((i) => parameters.getX(i)), at((i) => parameters.getY(i))]);
+  }
+
+  private up(): void {
+    if (!this.held) return;
+    this.held = null;
+    this.controls.enabled = true;
+    this.events.dropped();
+  }
+}
