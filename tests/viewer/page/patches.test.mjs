@@ -73,7 +73,7 @@ export const tests = [
     const shown = await listed(bar.locator('.cursor-words'));
     const [u, v] = shown['u, v'].split(', ').map(Number);
     assert.ok(u > 0.05 && v > 0.05 && u + v < 0.95);
-    const [answer] = (await program(page, folder, '--at', `${u},${v}`)).values ?? (await program(page, folder, '--at', `${u},${v}`)).at;
+    const [answer] = (await program(page, folder, '--at', `${u},${v}`)).points;
     shown.point.split(', ').map(Number).forEach((value, k) => near(value, answer.point[k], 0, 2e-3, `coordinate ${k}`));
     near(Number(shown.Gaussian), answer.gaussian, 0.02, 1e-3, 'Gaussian curvature');
     // On the surface itself: the same place, from the other side.

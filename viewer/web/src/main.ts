@@ -109,7 +109,7 @@ async function start(): Promise<void> {
     input.value = '';
   }});
   const open = make('button', {type: 'button', click: () => input.click()}, 'Open view');
-  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, make('span', {class: 'gap'}), status, cancel, make('span', {class: 'gap'}), link, save, open, input, picture, theme);
+  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, status, cancel, link, save, open, input, picture, theme);
   const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element);
   page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage));
 
@@ -120,8 +120,12 @@ async function start(): Promise<void> {
     setTimeout(() => { if (noted === words) { noted = ''; showStatus(); } }, 8000);
   }
   function showStatus(): void {
-    const running = tasks.states;
-    cancel.hidden = running.length === 0;
+    // Words and the button come after a quarter of a second, and nothing in the page moves for them: a dragged point
+    // would jump away from under the pointer.
+    const all = tasks.states, running = all.filter((one) => performance.now() - one.since > 250);
+    status.dataset.busy = String(all.length > 0);
+    if (all.length > running.length) setTimeout(showStatus, 260);
+    cancel.classList.toggle('away', running.length === 0);
     const errors = [...tasks.errors.values()];
     status.classList.toggle('error', errors.length > 0 && running.length === 0);
     if (running.length > 0) {
@@ -130,7 +134,6 @@ async function start(): Promise<void> {
     } else {
       status.replaceChildren(make('span', {}, errors.length > 0 ? [...new Set(errors)].join('; ') : noted || 'Ready'));
     }
-    status.dataset.busy = String(running.length > 0);
   }
   function show(): void {
     const state = history.state;

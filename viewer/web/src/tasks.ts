@@ -5,6 +5,7 @@ export interface TaskState {
   name: string;
   words: string;
   fraction: number;
+  since: number;
 }
 
 export class Tasks {
@@ -24,7 +25,7 @@ export class Tasks {
     this.errors.delete(name);
     if (key !== null) {
       const abort = new AbortController();
-      const state: TaskState = {name, words, fraction: 0};
+      const state: TaskState = {name, words, fraction: 0, since: performance.now()};
       this.running.set(name, {key, abort, state});
       const progress: Progress = (stage, fraction) => {
         state.words = `${words}: ${stage}`;

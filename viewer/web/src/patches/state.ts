@@ -1,5 +1,4 @@
 // What the triangular-surface view shows: three curves as `retalho patch` reads them, and how the surface is looked at.
-import blade from '../../../../examples/patches/blade.json';
 import octant from '../../../../examples/patches/octant.json';
 import saddle from '../../../../examples/patches/saddle.json';
 
@@ -44,7 +43,7 @@ export function editable(given: unknown): PatchDocument | null {
   return {patches: [{name: patch.name ?? 'patch', sides}]};
 }
 
-export const PATCH_PRESETS: [name: string, document: PatchDocument][] = ([['Saddle', saddle], ['Octant of a sphere', octant], ['Blade', blade]] as [string, unknown][])
+export const PATCH_PRESETS: [name: string, document: PatchDocument][] = ([['Saddle', saddle], ['Octant of a sphere', octant]] as [string, unknown][])
   .flatMap(([name, given]): [string, PatchDocument][] => { const document = editable(given); return document ? [[name, document]] : []; });
 
 export function firstPatches(): PatchesState {
