@@ -8,6 +8,7 @@
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/raster/io.h"
+#include "retalho/tetraquad/document.h"
 
 namespace retalho::viewer {
 namespace {
@@ -34,6 +35,12 @@ Raster example_grid() {
   return raster;
 }
 
+void add_tetraquad(InputFiles& inputs, const std::string& name, TetraQuad surface) {
+  std::string words =
+      fmt::format("TetraQuad, {} vertices, {} tetrahedra", surface.mesh.lattice.size(), surface.mesh.tets.size());
+  inputs.tetraquads.push_back({name, std::move(words), std::make_shared<const TetraQuad>(std::move(surface))});
+}
+
 TerrainInput read_grid(const std::string& path, const std::string& name, const Context& context) {
   ReadNotes notes;
   auto grid = std::make_shared<Raster>(read_raster(path, {}, &notes, context));
@@ -43,16 +50,21 @@ TerrainInput read_grid(const std::string& path, const std::string& name, const C
   return {name, describe(*grid, notes, summary), std::move(grid), nullptr};
 }
 
-TerrainInput read_model(const std::string& path, const std::string& name) {
+void read_model(InputFiles& inputs, const std::string& path, const std::string& name) {
   Model model = load_model(path);
-  Terrain* terrain = std::get_if<Terrain>(&model);
-  if (!terrain)
+  if (auto* terrain = std::get_if<Terrain>(&model)) {
+    std::string words = fmt::format("{} model, {} vertices, {} triangles", surface_name(terrain->kind),
+                                    terrain->tin.vertex_count(), terrain->tin.triangle_count());
+    inputs.terrains.push_back({name, std::move(words), nullptr, std::make_shared<const Terrain>(std::move(*terrain))});
+  } else if (auto* surface = std::get_if<TetraQuad>(&model)) {
+    add_tetraquad(inputs, name, std::move(*surface));
+  } else {
     throw BadInput(
-        fmt::format("'{}' holds no terrain, and the page shows terrains: `retalho render` draws the others", path),
+        fmt::format("'{}' holds triangular patches, which the page makes from curves: save the curves as JSON and open "
+                    "them in the page, or draw the model with `retalho render`",
+                    path),
         path);
-  std::string words = fmt::format("{} model, {} vertices, {} triangles", surface_name(terrain->kind),
-                                  terrain->tin.vertex_count(), terrain->tin.triangle_count());
-  return {name, std::move(words), nullptr, std::make_shared<const Terrain>(std::move(*terrain))};
+  }
 }
 
 }  // namespace
@@ -62,7 +74,9 @@ InputFiles read_inputs(const std::vector<std::string>& paths, const Context& con
   for (const std::string& path : paths) {
     const std::string name = std::filesystem::path(path).filename().string();
     if (is_model_file(path))
-      inputs.terrains.push_back(read_model(path, name));
+      read_model(inputs, path, name);
+    else if (std::filesystem::path(path).extension() == ".json")
+      add_tetraquad(inputs, name, read_quadrics(path));
     else
       inputs.terrains.push_back(read_grid(path, name, context));
   }

@@ -11,6 +11,7 @@
 #include "calls.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/terrain.h"
+#include "retalho/tetraquad/tetraquad.h"
 
 namespace retalho::viewer {
 
@@ -22,16 +23,16 @@ struct TerrainInput {
   std::shared_ptr<const Terrain> model;  ///< null for a grid
 };
 
-/// A document for the page's editors, as the program writes and reads it.
-struct DocumentInput {
-  std::string name, kind;  ///< "curves" or "patches"
-  Json document;
+/// An implicit surface: a model file, or quadrics by hand (docs/tetraquad.md).
+struct TetraQuadInput {
+  std::string name, described;
+  std::shared_ptr<const TetraQuad> surface;
 };
 
 struct InputFiles {
   std::vector<TerrainInput> terrains;
   bool terrains_given = true;  ///< false: the only terrain is the example
-  std::vector<DocumentInput> documents;
+  std::vector<TetraQuadInput> tetraquads;
 };
 
 /// Reads `paths`; with none, the terrain is an example made by formula. Throws as the readers do, and BadInput for a

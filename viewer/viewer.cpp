@@ -11,6 +11,7 @@
 #include "patch_calls.h"
 #include "retalho/core/error.h"
 #include "terrain_calls.h"
+#include "tetraquad_calls.h"
 #include "work.h"
 
 namespace retalho::viewer {
@@ -59,6 +60,7 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
   add_terrain_calls(table, inputs);
   add_curve_calls(table);
   add_patch_calls(table);
+  add_tetraquad_calls(table, inputs);
   Workers workers(std::move(table), threads);
   Guard guard;
   guard.token = make_token();

@@ -19,6 +19,8 @@ void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   const viewer::InputFiles inputs = viewer::read_inputs(options.files, program.context());
   for (const viewer::TerrainInput& one : inputs.terrains) program.say(fmt::format("{}: {}", one.name, one.described));
+  for (const viewer::TetraQuadInput& one : inputs.tetraquads)
+    program.say(fmt::format("{}: {}", one.name, one.described));
   program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
   BrowserDoor door;
   viewer::serve(inputs, program.threads, cancel_flag(), [&](const std::string& address) {
@@ -40,8 +42,12 @@ void add_view(CLI::App& root, Program& program) {
   CLI::App* command = add_command(root, program, "view", "The page, in the browser, on this machine only",
                                   "retalho view dem.tif\n"
                                   "retalho view dem.tif model.retalho\n"
+                                  "retalho view bunny.retalho\n"
                                   "retalho view --no-browser dem.tif");
-  command->add_option("FILE", options->files, "Elevation grids and terrain models (none: an example)")->type_name("");
+  command
+      ->add_option("FILE", options->files,
+                   "Elevation grids, models of terrains and TetraQuads, quadrics as JSON (none: examples)")
+      ->type_name("");
   command->add_flag("--no-browser", options->no_browser, "Print the address on standard output and open nothing");
   command->callback([options, &program] { run(program, *options); });
 }

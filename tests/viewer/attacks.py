@@ -368,6 +368,33 @@ def _(s):
     return None
 
 
+@attack("calls of the editors with inputs that are wrong in every way")
+def _(s):
+    side = {"kind": "bezier", "points": [[0, 0, 0], [1, 0, 0]]}
+    good = {"patches": [{"sides": [side] * 3}]}
+    tries = [("/api/curves/compute", {"document": {"curves": [{"kind": "bezier", "points": [[1e308, 1], [0, -1e308]], "degree": -3}]}}),
+             ("/api/curves/compute", {"document": {"curves": [{"kind": "bspline", "degree": 3, "points": [[0, 0]] * 5, "knots": [0, 1]}]}}),
+             ("/api/curves/compute", {"document": {"curves": [{"kind": "polyline", "points": [[0, 0]] * 5000}]}}),
+             ("/api/curves/compute", {}), ("/api/curves/compute", {"document": []}), ("/api/curves/compute", {"document": "x", "t": 3}),
+             ("/api/curves/change", {"document": {"curves": []}, "curve": 0, "what": "split"}),
+             ("/api/curves/change", {"document": {"curves": [side]}, "curve": 9, "what": "split", "t": 0.5}),
+             ("/api/curves/change", {"document": {"curves": [side]}, "curve": 0, "what": "burn"}),
+             ("/api/patches/compute", {"document": good, "divisions": 8, "recovery": "smooth", "colour": "none"}),
+             ("/api/patches/compute", {"document": good, "divisions": 1e9, "recovery": "smooth", "colour": "none"}),
+             ("/api/patches/at", {"document": {"patches": []}, "divisions": 8, "recovery": "spr", "u": 0, "v": 0}),
+             ("/api/tetraquads/load", {"document": {"tetrahedra": [[0, 0, 0, 99]]}}), ("/api/tetraquads/load", {"file": 0}),
+             ("/api/tetraquads/load", {"document": {"tetrahedra": [[0, 0, 0, 0]], "step": 0}}),
+             ("/api/tetraquads/ray", {"document": {"tetrahedra": [[0, 0, 0, 0]], "everywhere": {"xx": 1, "1": -0.1}}, "origin": [0, 0], "direction": "up"})]
+    refused_in_curve = 0
+    for path, body in tries:
+        status, words, _ = s.call(path, body)
+        if status == 200 and path == "/api/curves/compute":
+            refused_in_curve += b"error" in words
+        elif status != 400 or len(json.loads(words)["error"]["message"]) < 10:
+            return f"{path} {str(body)[:80]}: answered {status} {words[:120]!r}"
+    return None if refused_in_curve >= 1 else "no curve was refused"
+
+
 @attack("work that would never end: a tolerance of 0 and an interval of 1e-9")
 def _(s):
     status, words, _ = s.fit()

@@ -32,7 +32,7 @@ async function firstPicture() {
   const begun = performance.now();
   const {server, address} = await serve([dem]);
   await page.goto(address);
-  await page.waitForSelector('.overlay dl dd');
+  await page.waitForSelector('.stage .overlay dl dd');
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   const seconds = (performance.now() - begun) / 1000;
   await context.close();

@@ -38,14 +38,14 @@ export const tests = [
   ['a dragged point: the surface, its gap and its jump are the program’s, in all recoveries', () => withPage(async ({view, page, folder, bar}) => {
     await view.picture('patches-light');
     const before = await listed(bar.locator('.readout').first());
-    const handles = JSON.parse(await page.locator('.patch-stage canvas').getAttribute('data-handles'));
+    const handles = JSON.parse(await page.locator('.patch-stage:not(.tetra-stage) canvas').getAttribute('data-handles'));
     const [x, y] = handles[1];
     await page.mouse.move(x, y);
     await page.mouse.down();
     for (let k = 1; k <= 12; ++k) await page.mouse.move(x + 5 * k, y - 4 * k);
     await page.mouse.up();
     await view.quiet();
-    const moved = JSON.parse(await page.locator('.patch-stage canvas').getAttribute('data-handles'))[1];
+    const moved = JSON.parse(await page.locator('.patch-stage:not(.tetra-stage) canvas').getAttribute('data-handles'))[1];
     assert.ok(Math.hypot(moved[0] - x - 60, moved[1] - y + 48) < 4, `the point lies under the pointer: ${moved} from ${[x, y]}`);
     for (const [label, recovery] of [['smooth', 'smooth'], ['spr', 'spr'], ['barycentric', 'barycentric']]) {
       await bar.getByLabel('Recovery').selectOption(label);
@@ -62,7 +62,7 @@ export const tests = [
     await page.keyboard.press('Control+z');
     await page.keyboard.press('Control+z');
     await view.quiet();
-    const back = JSON.parse(await page.locator('.patch-stage canvas').getAttribute('data-handles'))[1];
+    const back = JSON.parse(await page.locator('.patch-stage:not(.tetra-stage) canvas').getAttribute('data-handles'))[1];
     assert.deepEqual(back, [x, y], 'undo brings the point back');
   })],
 
@@ -77,7 +77,7 @@ export const tests = [
     shown.point.split(', ').map(Number).forEach((value, k) => near(value, answer.point[k], 0, 2e-3, `coordinate ${k}`));
     near(Number(shown.Gaussian), answer.gaussian, 0.02, 1e-3, 'Gaussian curvature');
     // On the surface itself: the same place, from the other side.
-    const handles = JSON.parse(await page.locator('.patch-stage canvas').getAttribute('data-handles'));
+    const handles = JSON.parse(await page.locator('.patch-stage:not(.tetra-stage) canvas').getAttribute('data-handles'));
     const middle = handles.reduce(([a, b], [x, y]) => [a + x / handles.length, b + y / handles.length], [0, 0]);
     await page.mouse.move(...middle);
     await view.quiet();

@@ -44,14 +44,14 @@ export const tests = [
     await page.locator('input[type=number][aria-label="Tolerance"]').fill('5');
     await page.keyboard.press('Enter');
     await view.quiet();
-    const shown = await numbers(page, '.overlay');
+    const shown = await numbers(page, '.stage .overlay');
     near(shown.vertices, report.vertices, 0, 'vertices');
     near(shown.coefficients, report.coefficients, 0, 'coefficients');
     near(shown.RMSE, report.rmse, 1e-3, 'RMSE');
     near(shown['largest error'], report.max_error, 1e-3, 'largest error');
     near(shown['slope RMSE'], report.slope_rmse, 5e-3, 'slope RMSE');
     await view.picture('terrain-relief');
-    await page.getByLabel('Colour').selectOption('error');
+    await page.locator('.controls:not([hidden])').getByLabel('Colour').selectOption('error');
     await view.quiet();
     const top = await page.$eval('.legend .ticks span:last-child', (span) => parseFloat(span.textContent));
     near(top, report.max_error, 1e-3, 'the end of the errors’ legend');
@@ -90,7 +90,7 @@ export const tests = [
     await page.keyboard.press('Enter');
     await view.quiet();
     const lines = retalho('contour', model, '-o', join(folder, 'lines.geojson'), '--interval', '25');
-    const words = await page.$eval('.overlay', (box) => box.textContent);
+    const words = await page.$eval('.stage .overlay', (box) => box.textContent);
     assert.match(words, new RegExp(`${lines.lines} lines on `));
     await page.getByLabel('Triangles', {exact: true}).check();
     await view.quiet();
@@ -118,8 +118,8 @@ export const tests = [
   ['three surfaces side by side; undo, redo, the link and a saved view bring them back', () => withGrid(async ({view, page, folder}) => {
     await page.getByLabel('Side by side').selectOption('3');
     await view.quiet();
-    assert.equal(await page.locator('.overlay').count(), 3);
-    const [flat, paper, ours] = await page.$$eval('.overlay', (boxes) => boxes.map((box) => box.querySelector('p').textContent));
+    assert.equal(await page.locator('.stage .overlay').count(), 3);
+    const [flat, paper, ours] = await page.$$eval('.stage .overlay', (boxes) => boxes.map((box) => box.querySelector('p').textContent));
     assert.notEqual(paper, ours);
     assert.equal(flat, paper);
     await view.picture('terrain-three');
@@ -127,10 +127,10 @@ export const tests = [
     await page.keyboard.press('Control+z');
     await page.keyboard.press('Control+z');
     await view.quiet();
-    assert.equal(await page.locator('.overlay').count(), 1);
+    assert.equal(await page.locator('.stage .overlay').count(), 1);
     await page.keyboard.press('Control+Shift+z');
     await view.quiet();
-    assert.equal(await page.locator('.overlay').count(), 3);
+    assert.equal(await page.locator('.stage .overlay').count(), 3);
 
     const saving = page.waitForEvent('download');
     await page.getByRole('button', {name: 'Save view'}).click();
@@ -141,13 +141,13 @@ export const tests = [
     await view.quiet();
     await page.locator('input.open-view').setInputFiles(file);
     await view.quiet();
-    assert.equal(await page.locator('.overlay').count(), 3);
+    assert.equal(await page.locator('.stage .overlay').count(), 3);
 
     await page.getByRole('button', {name: 'Link'}).click();
     assert.ok(!page.url().includes('token'), 'the token is not in the address');
     await page.reload();
     await view.quiet();
-    assert.equal(await page.locator('.overlay').count(), 3);
+    assert.equal(await page.locator('.stage .overlay').count(), 3);
     await page.getByRole('button', {name: /^Theme/}).click();
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
     await view.quiet();

@@ -11,9 +11,11 @@ import {decoded, encoded, merged, type PageState, type ViewName} from './state';
 import {Tasks} from './tasks';
 import {firstLook, type FileInfo} from './terrain/state';
 import {TerrainView} from './terrain/view';
+import {firstTetraQuads, TETRA_PRESETS} from './tetraquads/state';
+import {TetraQuadsView, type TetraFile} from './tetraquads/view';
 import './style.css';
 
-const VIEWS: [ViewName, string][] = [['start', 'Start'], ['terrain', 'Terrain'], ['curves', 'Curves'], ['patches', 'Triangular surfaces']];
+const VIEWS: [ViewName, string][] = [['start', 'Start'], ['terrain', 'Terrain'], ['curves', 'Curves'], ['patches', 'Triangular surfaces'], ['tetraquads', 'TetraQuads']];
 const page = document.getElementById('page') as HTMLElement;
 
 function fail(words: string): void {
@@ -34,26 +36,28 @@ function linkedState(first: PageState): PageState {
 async function start(): Promise<void> {
   if (!takeToken()) return fail('This address lacks its token. Use the whole address that `retalho view` printed.');
   page.replaceChildren(make('main', {class: 'failure'}, make('p', {}, 'Asking the program what it has opened …')));
-  let files: FileInfo[], given: boolean;
+  let files: FileInfo[], tetraFiles: TetraFile[], given: boolean;
   try {
     const {words} = await ask('/api/terrain/files');
     files = words.files as FileInfo[];
     given = words.given as boolean;
+    tetraFiles = (await ask('/api/tetraquads/files')).words.files as TetraFile[];
   } catch (error) {
     return fail(error instanceof CallError ? `${error.message}.` : String(error));
   }
-  const first: PageState = {theme: 'auto', view: given ? 'terrain' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves(), patches: firstPatches()};
+  const first: PageState = {theme: 'auto', view: given ? 'terrain' : tetraFiles.length > 0 ? 'tetraquads' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves(), patches: firstPatches(), tetraquads: {...firstTetraQuads(), file: tetraFiles.length > 0 ? 0 : -1}};
   const history = new History<PageState>(linkedState(first));
   if (!files[history.state.terrain.file]) history.change((s) => { s.terrain = first.terrain; }, {silent: true});
 
   const tasks = new Tasks(() => showStatus());
-  let terrain: TerrainView, patches: PatchesView;
+  let terrain: TerrainView, patches: PatchesView, tetraquads: TetraQuadsView;
   try {
     terrain = new TerrainView(files, history.state.terrain,
       (change, group) => history.change((s) => change(s.terrain), {group}), tasks,
       (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
       (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true}));
     patches = new PatchesView(history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks);
+    tetraquads = new TetraQuadsView(tetraFiles, history.state.tetraquads, (change, options) => history.change((s) => change(s.tetraquads), options), tasks);
   } catch {
     return fail('This browser gives no WebGL 2 here, which the pictures need. Another browser, or its hardware acceleration, may help.');
   }
@@ -61,7 +65,8 @@ async function start(): Promise<void> {
   const starting = startPage(files,
     (file) => history.change((s) => { s.view = 'terrain'; if (s.terrain.file !== file) s.terrain = firstLook(file, files[file]); }),
     (preset) => { curves.open(PRESETS[preset][1]); go('curves'); },
-    (preset) => { patches.open(PATCH_PRESETS[preset][1]); go('patches'); });
+    (preset) => { patches.open(PATCH_PRESETS[preset][1]); go('patches'); },
+    (preset) => { tetraquads.open(TETRA_PRESETS[preset][1]); go('tetraquads'); });
 
   function go(view: ViewName): void {
     history.change((s) => { s.view = view; }, {silent: true});
@@ -92,7 +97,7 @@ async function start(): Promise<void> {
   }}, 'Link');
   const picture = make('button', {type: 'button', click: async () => {
     const {view} = history.state;
-    const blob = await (view === 'patches' ? patches : terrain).scene.picture();
+    const blob = await (view === 'patches' ? patches : view === 'tetraquads' ? tetraquads : terrain).scene.picture();
     if (blob) download(`${view}.png`, blob);
   }}, 'Save picture');
   const save = make('button', {type: 'button', title: 'What is shown, as a file that Open view reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
@@ -110,8 +115,8 @@ async function start(): Promise<void> {
   }});
   const open = make('button', {type: 'button', click: () => input.click()}, 'Open view');
   const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, status, cancel, link, save, open, input, picture, theme);
-  const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element);
-  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage));
+  const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element, tetraquads.element);
+  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage, tetraquads.stage));
 
   let noted = '';
   function note(words: string): void {
@@ -153,6 +158,7 @@ async function start(): Promise<void> {
     terrain.show(state.terrain, state.view === 'terrain');
     curves.show(state.curves, state.view === 'curves');
     patches.show(state.patches, state.view === 'patches');
+    tetraquads.show(state.tetraquads, state.view === 'tetraquads');
   }
   history.listen(show);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);

@@ -2,8 +2,9 @@
 import type {CurvesState} from './curves/state';
 import type {PatchesState} from './patches/state';
 import type {TerrainState} from './terrain/state';
+import type {TetraQuadsState} from './tetraquads/state';
 
-export type ViewName = 'start' | 'terrain' | 'curves' | 'patches';
+export type ViewName = 'start' | 'terrain' | 'curves' | 'patches' | 'tetraquads';
 
 export interface PageState {
   theme: 'auto' | 'light' | 'dark';
@@ -11,6 +12,7 @@ export interface PageState {
   terrain: TerrainState;
   curves: CurvesState;
   patches: PatchesState;
+  tetraquads: TetraQuadsState;
 }
 
 /** The values of `given` where they are of the kind that `first` has. */

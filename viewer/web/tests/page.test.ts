@@ -8,6 +8,7 @@ import {editable, firstPatches, handles, movePoint, PATCH_PRESETS, robustRange} 
 import {rampBytes, rampColour} from '../src/ramps';
 import {decoded, encoded, merged} from '../src/state';
 import {ticks} from '../src/terrain/profile';
+import {setTerm, termsOf, TETRA_PRESETS} from '../src/tetraquads/state';
 import {fitRequest, firstLook, roundStep, SIDE_BY_SIDE, type FileInfo} from '../src/terrain/state';
 
 test('events are split, and what is incomplete waits', () => {
@@ -174,4 +175,14 @@ test('a legend leaves out the wildest values and keeps 0 in the middle', () => {
   assert.equal(low, -high);
   assert.ok(high > 0.6 && high < 0.76);
   assert.deepEqual(robustRange(new Float32Array(0), true), [0, 1]);
+});
+
+test('a vertex gets a quadric of its own when one of its terms is set, and the others stay', () => {
+  const document = structuredClone(TETRA_PRESETS[0][1]);
+  assert.deepEqual(termsOf(document, [1, 1, 0]), {xx: 1, yy: 1, zz: 1, '1': -0.3});
+  setTerm(document, [1, 1, 0], 'xy', 0.5);
+  setTerm(document, [1, 1, 0], 'xx', 2);
+  assert.deepEqual(termsOf(document, [1, 1, 0]), {xx: 2, yy: 1, zz: 1, '1': -0.3, xy: 0.5});
+  assert.deepEqual(termsOf(document, [0, 0, 0]), {xx: 1, yy: 1, zz: 1, '1': -0.3});
+  assert.equal(document.quadrics?.length, 1);
 });

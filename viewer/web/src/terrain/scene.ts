@@ -2,6 +2,7 @@
 import {PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {make} from '../dom';
+import {isSoftware} from '../software';
 import type {Panel} from './panel';
 import type {Place} from './state';
 
@@ -20,9 +21,7 @@ export class TerrainScene {
 
   constructor(cameraMoved: (camera: number[]) => void) {
     this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true});
-    const gl = this.renderer.getContext();
-    const info = gl.getExtension('WEBGL_debug_renderer_info');
-    this.software = /swiftshader|llvmpipe|software/i.test(info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '');
+    this.software = isSoftware(this.renderer);
     this.camera.up.set(0, 0, 1);
     this.element.append(this.canvas);
     this.controls = new OrbitControls(this.camera, this.canvas);
