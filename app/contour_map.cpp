@@ -9,10 +9,17 @@
 namespace retalho::app {
 namespace {
 
+/// 1st, 2nd, 3rd, 5th, 11th.
+const char* ordinal(int n) {
+  if (n % 100 >= 11 && n % 100 <= 13) return "th";
+  return n % 10 == 1 ? "st" : n % 10 == 2 ? "nd" : n % 10 == 3 ? "rd" : "th";
+}
+
 std::string level_words(const SheetContent& content, const VectorOptions& file) {
   const std::string unit = content.height_unit.empty() ? std::string() : " " + content.height_unit;
-  const std::string every =
-      file.index_every > 0 ? fmt::format("; every {} of them thick", file.index_every) : std::string();
+  const std::string every = file.index_every > 0 ? fmt::format("; every {}{} is an index contour", file.index_every,
+                                                               ordinal(file.index_every))
+                                                 : std::string();
   if (file.interval > 0) return fmt::format("Contour lines every {:.6g}{}{}", file.interval, unit, every);
   return fmt::format("Contour lines at {} heights{}", content.lines->levels.size(), every);
 }

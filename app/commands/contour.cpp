@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contour_compare.h"
 #include "contour_map.h"
 #include "fitting.h"
 #include "inputs.h"
@@ -31,6 +32,8 @@ struct Options {
   int index_every = 5;
   bool bands = false, ring = false, raw = false;
   SheetFlags sheet;
+  std::string compare;
+  int zoom = 48;
   GridFlags grid;
   PointOptions points;
   BudgetFlags budget;
@@ -134,6 +137,43 @@ std::vector<double> levels_of(const Options& options, const Surface& surface) {
   return contour_levels(surface.low - beyond, surface.high + beyond, options.interval, options.base);
 }
 
+/// The picture of --compare-surfaces; returns the names of the surfaces in it.
+std::vector<std::string> compare(const Program& program, const Options& options, const Context& context) {
+  SurfaceComparison comparison;
+  comparison.output = options.compare;
+  comparison.zoom = options.zoom;
+  const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
+  const auto prepare = [&](double low, double high, double cell) {
+    Surface range;
+    range.low = low;
+    range.high = high;
+    comparison.levels = levels_of(options, range);
+    for (std::size_t k = 0; k < comparison.levels.size(); ++k)
+      comparison.index.push_back(is_index_level(comparison.levels, static_cast<int>(k), file));
+    comparison.tolerance = options.tolerance > 0 ? options.tolerance : 0.02 * cell;
+  };
+  if (is_model_file(options.input))
+    throw UsageError("a model has its surface already: --compare-surfaces is for grids and points", {},
+                     "--compare-surfaces");
+  if (takes_points(options.input, options.points)) {
+    const PointCloud cloud = load_points(program, options.input, options.points, context);
+    const Tin tin = triangulate_points(cloud.positions, nullptr, context);
+    const auto [low, high] = std::minmax_element(tin.heights.begin(), tin.heights.end());
+    prepare(*low, *high, mean_edge(tin));
+    return compare_point_surfaces(program, tin, cloud.georef, comparison, context);
+  }
+  RasterSummary summary;
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const Raster part = middle_of(raster, options.zoom);
+  if (part.cells() < raster.cells())
+    program.say(fmt::format("the picture shows the middle {} x {} cells of {} x {}: --zoom N shows N, --zoom 0 all",
+                            part.columns, part.rows, raster.columns, raster.rows));
+  const RasterSummary shown = summarize(part);
+  if (shown.valid == 0) throw BadInput("the part that is shown has no data: choose --zoom 0", options.input);
+  prepare(shown.minimum, shown.maximum, std::min(part.cell_width, part.cell_height));
+  return compare_grid_surfaces(program, part, comparison, context);
+}
+
 nlohmann::ordered_json singular_json(const ContourSet& set, const Georef& georef) {
   auto list = nlohmann::ordered_json::array();
   for (const SingularPlace& place : set.singular) {
@@ -148,9 +188,23 @@ void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   if ((options.interval > 0) == !options.levels.empty())
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
-  check_output(program, options.output, kEndings, {options.input});
-  check_sheet_flags(options.sheet, options.output);
+  if (options.output.empty() && options.compare.empty())
+    throw UsageError("name an output: -o FILE for lines, --compare-surfaces FILE for a picture", {}, "--output");
+  if (!options.output.empty()) {
+    check_output(program, options.output, kEndings, {options.input});
+    check_sheet_flags(options.sheet, options.output);
+  }
+  if (!options.compare.empty())
+    check_output(program, options.compare, {".png", ".svg", ".pdf"}, {options.input, options.output});
   const Context context = program.context();
+  if (!options.compare.empty()) {
+    const std::vector<std::string> names = compare(program, options, context);
+    if (options.output.empty()) {
+      if (program.json) return program.print({{"surfaces", names}, {"seconds", watch.seconds()}});
+      return program.print(list_text({{"surfaces", fmt::format("{}", fmt::join(names, "; "))},
+                                      {"seconds", fmt::format("{:.2f}", watch.seconds())}}));
+    }
+  }
   Surface surface = load_surface(program, options, context);
   ContourOptions contour;
   contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
@@ -240,6 +294,7 @@ void add_contour(CLI::App& root, Program& program) {
                   "retalho contour dem.tif -o lines.gpkg --interval 20\n"
                   "retalho contour dem.tif -o bands.gpkg --interval 100 --bands\n"
                   "retalho contour dem.tif -o lines.shp --levels 350,400,500 --tolerance 2\n"
+                  "retalho contour dem.tif --interval 20 --compare-surfaces choose.png\n"
                   "retalho contour model.retalho -o lines.geojson --interval 10\n"
                   "retalho contour dem.tif -o map.pdf --interval 20 --bands --curves --title 'Jacksboro' --sheet A3\n"
                   "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
@@ -247,7 +302,6 @@ void add_contour(CLI::App& root, Program& program) {
       ->required()
       ->type_name("");
   command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf; .svg or .pdf: a map sheet")
-      ->required()
       ->type_name("FILE");
   command->add_option("--interval", options->interval, "Height between levels")
       ->type_name("D")
@@ -282,6 +336,12 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("NAME");
   command->add_option("--layer", options->points.layer, "Vector files with several layers: which one")
       ->type_name("NAME");
+  command
+      ->add_option("--compare-surfaces", options->compare,
+                   "A picture (.png .svg .pdf) of the lines of every surface, side by side, each through all samples")
+      ->type_name("FILE");
+  command->add_option("--zoom", options->zoom, "Of --compare-surfaces: cells a side, of the grid's middle (48; 0: all)")
+      ->check(CLI::Range(0, 65535));
   add_sheet_flags(*command, options->sheet);
   add_budget_flags(*command, options->budget);
   add_grid_flags(*command, options->grid);

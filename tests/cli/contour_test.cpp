@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "program.h"
@@ -140,6 +142,56 @@ TEST(ContourSheet, RefusesWithAMessageAndLeavesNothing) {
   EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --interval 10 --curves").code, 2);
   EXPECT_EQ(run(folder, "contour dem.asc -o x.gpkg --interval 10 --title T").code, 2);
   EXPECT_EQ(run(folder, "contour dem.asc -o nowhere/x.pdf --interval 10").code, 5);
+  EXPECT_EQ(folder.entries(), before);
+}
+
+TEST(ContourSheet, SeasPlateausAndVoids) {
+  const ScratchFolder folder;
+  const auto land = [](int c, int r) {
+    return std::round(30 - 1.5 * std::hypot(c - 28, r - 20) + 4 * std::sin(0.5 * c));
+  };
+  folder.put("sea.asc", ascii_grid(60, 44, [&](int c, int r) { return std::max(0.0, land(c, r)); }));
+  folder.put("table.asc", ascii_grid(60, 44, [&](int c, int r) { return std::min(20.0, land(c, r)); }));
+  folder.put("voids.asc",
+             ascii_grid(60, 44, [&](int c, int r) { return (c * 7 + r * 5) % 31 < 4 ? NAN : land(c, r); }));
+  for (const char* name : {"sea", "table", "voids"}) {
+    const Outcome outcome =
+        run(folder, fmt::format("contour {0}.asc -o {0}.pdf --interval 5 --bands --curves --json", name));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto sheet = outcome.json()["sheet"];
+    EXPECT_GT(sheet["curves"].get<int>(), 30) << name;
+    EXPECT_LT(20 * sheet["straight_pieces"].get<int>(), sheet["curves"].get<int>()) << name;
+    EXPECT_EQ(sheet["unproved_pairs"].get<int>(), 0) << name;
+  }
+}
+
+TEST(CompareSurfaces, OfGridsAndPoints) {
+  const Hills folder;
+  const Outcome grid = run(folder, "contour dem.asc --interval 10 --compare-surfaces c.svg --zoom 20 --json");
+  ASSERT_EQ(grid.code, 0) << grid.err;
+  const auto names = grid.json()["surfaces"];
+  ASSERT_EQ(names.size(), 8U);
+  EXPECT_NE(grid.err.find("middle 20 x 20 cells of 40 x 30"), std::string::npos);
+  const std::string svg = slurp(folder / "c.svg");
+  for (const auto& name : names) EXPECT_NE(svg.find(fmt::format(">{}<", name.get<std::string>())), std::string::npos);
+  std::string xyz;
+  for (int i = 0; i < 120; ++i) xyz += fmt::format("{} {} {}\n", (i * 37) % 101, (i * 53) % 97, (i * 29) % 31);
+  folder.put("points.xyz", xyz);
+  const Outcome points = run(folder, "contour points.xyz --interval 5 --compare-surfaces p.png -o p.gpkg");
+  ASSERT_EQ(points.code, 0) << points.err;
+  EXPECT_TRUE(slurp(folder / "p.png").starts_with("\x89PNG"));
+  EXPECT_FALSE(slurp(folder / "p.gpkg").empty());
+}
+
+TEST(CompareSurfaces, RefusesWithAMessageAndLeavesNothing) {
+  const Hills folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 2").code, 0);
+  const std::size_t before = folder.entries();
+  EXPECT_EQ(run(folder, "contour dem.asc --interval 10").code, 2);  // no output at all
+  EXPECT_EQ(run(folder, "contour dem.asc --interval 10 --compare-surfaces c.tif").code, 2);
+  EXPECT_EQ(run(folder, "contour m.retalho --interval 10 --compare-surfaces c.png").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc --interval 10 --compare-surfaces nowhere/c.png").code, 5);
+  EXPECT_EQ(run(folder, "contour dem.asc --interval 10 --compare-surfaces c.png --zoom -1").code, 2);
   EXPECT_EQ(folder.entries(), before);
 }
 

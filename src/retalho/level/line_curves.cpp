@@ -29,7 +29,7 @@ struct Span {
   Cubic cubic;
 };
 
-constexpr std::uint8_t kStraight = 3;
+constexpr std::uint8_t kStraight = 6;  // after tolerance / 4^5: two lines may run far closer than the tolerance
 constexpr std::size_t kMostVertices = 256;
 
 Vec2 unit(Vec2 d) {

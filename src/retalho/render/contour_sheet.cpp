@@ -131,6 +131,23 @@ PlanePath curve(const CurveSet& set, const CurveLine& line) {
   return path;
 }
 
+/// Lines that run closer than the page's unit (around flats) meet by rounding alone: those take more digits.
+CurveSet page_curves(const ContourSet& ground, const ContourSet& page, const SheetOptions& options, SheetMap map,
+                     const Context& context) {
+  constexpr double kFinest = 1e9, kMore = 1000;
+  const auto fit = [&](const ContourSet& lines) {
+    // What tracing and rounding have used up of the tolerance, the curves may not.
+    const double left = (options.tolerance - options.traced) * map.scale - 2 / map.per_unit;
+    return fit_line_curves(lines, {left, options.traced * map.scale, map.per_unit}, context);
+  };
+  CurveSet curves = fit(page);
+  while (curves.unproved > 0 && map.per_unit < kFinest) {
+    map.per_unit = std::min(kFinest, kMore * map.per_unit);
+    curves = fit(on_page(ground, map));
+  }
+  return curves;
+}
+
 void add_lines(SheetPage& page, const SheetContent& content, const SheetOptions& options, const ContourSet& lines,
                const SheetMap& map, SheetReport& report, const Context& context) {
   PageGroup ordinary, index;
@@ -147,9 +164,7 @@ void add_lines(SheetPage& page, const SheetContent& content, const SheetOptions&
         {std::move(path), fmt::format("data-elev=\"{}\"", number(lines.levels[static_cast<std::size_t>(level)]))});
   };
   if (options.curves) {
-    // What tracing and rounding have used up of the tolerance, the curves may not.
-    const double left = (options.tolerance - options.traced) * map.scale - 2 / map.per_unit;
-    const CurveSet curves = fit_line_curves(lines, {left, options.traced * map.scale, map.per_unit}, context);
+    const CurveSet curves = page_curves(*content.lines, lines, options, map, context);
     for (const CurveLine& line : curves.lines) add(line.level, curve(curves, line));
     report.straight = curves.straight;
     report.curves = curves.pieces.size() - curves.straight;
@@ -324,7 +339,9 @@ std::string contour_sheet(const SheetContent& content, const SheetOptions& optio
   page.groups.push_back(std::move(labels));
   if (lines.lines.empty()) {
     const std::string words =
-        fmt::format("No contour line: the heights lie between {:.6g} and {:.6g}", content.low, content.high);
+        content.high > content.low
+            ? fmt::format("No contour line: the heights lie between {:.6g} and {:.6g}", content.low, content.high)
+            : fmt::format("No contour line: all heights are {:.6g}", content.low);
     const double width = map.high.x - map.low.x - 4;
     page.groups.push_back(
         words_group("nothing", 0.5 * (map.low + map.high), words, fitting(words, 3.5, width, measure), 0.5));

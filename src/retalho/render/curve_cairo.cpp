@@ -94,6 +94,9 @@ void draw_axes(cairo_t* c, const PicturePanel& panel, const PanelLayout& l) {
 
 void draw_panel(cairo_t* c, const PicturePanel& panel, const PanelLayout& l) {
   if (panel.axes) draw_axes(c, panel, l);
+  if (!panel.caption.empty())
+    draw_text(c, panel.caption, l.frame_left + l.frame_width / 2, l.frame_top + l.frame_height + (panel.axes ? 34 : 18),
+              13, 0.5, {});
   if (!panel.title.empty()) draw_text(c, panel.title, l.frame_left + l.frame_width / 2, l.frame_top - 8, 13, 0.5, {});
   cairo_save(c);
   cairo_rectangle(c, l.frame_left, l.frame_top, l.frame_width, l.frame_height);
@@ -163,7 +166,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int size)
 
 void write_with_cairo(const CurvePicture& picture, const std::string& path, bool pdf, bool overwrite) {
   std::string bytes;
-  const int width = static_cast<int>(picture.panels.size()) * picture.panel_width, height = picture.panel_height;
+  const int width = picture_width(picture), height = picture_height(picture);
   constexpr int kZoom = 2;  // PNG: two device pixels a picture pixel, for sharp lines
   const Surface surface(pdf ? cairo_pdf_surface_create_for_stream(append, &bytes, width, height)
                             : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width * kZoom, height * kZoom),

@@ -14,6 +14,10 @@ struct PanelLayout {
   Vec2 place(Vec2 p) const { return {left + sx * p.x, top + sy * p.y}; }
 };
 
+/// Pixels of the whole picture.
+int picture_width(const CurvePicture& picture);
+int picture_height(const CurvePicture& picture);
+
 PanelLayout layout_panel(const CurvePicture& picture, std::size_t index);
 
 /// Round numbers (1, 2, 5 times a power of ten) between low and high, about `count` of them.

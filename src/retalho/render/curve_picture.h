@@ -41,7 +41,8 @@ struct PictureLabel {
 };
 
 struct PicturePanel {
-  std::string title;
+  std::string title;           ///< above the frame
+  std::string caption;         ///< beneath it
   Vec2 low{0, 0}, high{1, 1};  ///< what is shown
   bool axes = false;           ///< a frame with numbers
   bool stretch = false;        ///< x and y have scales of their own (graphs of functions)
@@ -51,9 +52,10 @@ struct PicturePanel {
   std::vector<PictureLabel> labels;
 };
 
-/// Panels stand side by side.
+/// Panels stand side by side, in rows of `columns` (0: all in one row).
 struct CurvePicture {
   std::vector<PicturePanel> panels;
+  int columns = 0;
   int panel_width = 640, panel_height = 480;
 };
 

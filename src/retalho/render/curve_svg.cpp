@@ -66,6 +66,11 @@ void append_axes(std::string& svg, const PicturePanel& panel, const PanelLayout&
 
 void append_panel(std::string& svg, const PicturePanel& panel, const PanelLayout& l, std::size_t index) {
   if (panel.axes) append_axes(svg, panel, l);
+  if (!panel.caption.empty())
+    svg += fmt::format(
+        "<text class=\"decoration\" x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"13\" text-anchor=\"middle\">{}</text>\n",
+        l.frame_left + l.frame_width / 2, l.frame_top + l.frame_height + (panel.axes ? 34 : 18),
+        escaped(panel.caption));
   if (!panel.title.empty())
     svg += fmt::format(
         "<text class=\"decoration\" x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"13\" text-anchor=\"middle\">{}</text>\n",
@@ -105,12 +110,32 @@ void append_panel(std::string& svg, const PicturePanel& panel, const PanelLayout
 
 }  // namespace
 
+namespace {
+
+int columns_of(const CurvePicture& picture) {
+  const int panels = static_cast<int>(picture.panels.size());
+  return picture.columns > 0 ? std::min(picture.columns, panels) : panels;
+}
+
+}  // namespace
+
+int picture_width(const CurvePicture& picture) {
+  return columns_of(picture) * picture.panel_width;
+}
+int picture_height(const CurvePicture& picture) {
+  const int panels = static_cast<int>(picture.panels.size()), columns = std::max(columns_of(picture), 1);
+  return (panels + columns - 1) / columns * picture.panel_height;
+}
+
 PanelLayout layout_panel(const CurvePicture& picture, std::size_t index) {
   const PicturePanel& panel = picture.panels[index];
-  const double margin = panel.axes ? 44 : 12, above = panel.title.empty() ? 12 : 28, below = panel.axes ? 26 : 12;
+  const double margin = panel.axes ? 44 : 12, above = panel.title.empty() ? 12 : 28,
+               below = (panel.axes ? 26 : 12) + (panel.caption.empty() ? 0 : 16);
   PanelLayout l;
-  l.frame_left = static_cast<double>(index) * picture.panel_width + margin;
-  l.frame_top = above;
+  const auto columns = static_cast<std::size_t>(columns_of(picture));
+  const std::size_t row = index / columns;
+  l.frame_left = static_cast<double>(index % columns) * picture.panel_width + margin;
+  l.frame_top = static_cast<double>(row) * picture.panel_height + above;
   l.frame_width = picture.panel_width - margin - 12;
   l.frame_height = picture.panel_height - above - below;
   const double width = std::max(panel.high.x - panel.low.x, 1e-300),
@@ -137,12 +162,11 @@ std::vector<double> ticks(double low, double high, int count) {
 }
 
 std::string to_svg(const CurvePicture& picture) {
-  const std::size_t width = picture.panels.size() * static_cast<std::size_t>(picture.panel_width);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"DejaVu Sans, sans-serif\">\n"
       "<rect class=\"decoration\" width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
-      width, picture.panel_height);
+      picture_width(picture), picture_height(picture));
   for (std::size_t i = 0; i < picture.panels.size(); ++i)
     append_panel(svg, picture.panels[i], layout_panel(picture, i), i);
   return svg + "</svg>\n";

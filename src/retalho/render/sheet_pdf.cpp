@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <new>
 #include <numbers>
 
 #include "retalho/core/error.h"
@@ -122,7 +123,11 @@ void draw_text(cairo_t* c, const PageText& text) {
 }
 
 cairo_status_t append_bytes(void* to, const unsigned char* bytes, unsigned int count) {
-  static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+  try {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+  } catch (const std::bad_alloc&) {  // not through C code
+    return CAIRO_STATUS_NO_MEMORY;
+  }
   return CAIRO_STATUS_SUCCESS;
 }
 
