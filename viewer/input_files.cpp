@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/raster/io.h"
@@ -50,6 +52,19 @@ TerrainInput read_grid(const std::string& path, const std::string& name, const C
   return {name, describe(*grid, notes, summary), std::move(grid), nullptr};
 }
 
+void add_cloud(InputFiles& inputs, const std::string& path, const std::string& name, const Context& context) {
+  PointNotes notes;
+  PointCloud cloud = read_points(path, {}, &notes, context);
+  std::string words = describe(cloud, notes, summarize(cloud));
+  const bool given =
+      std::any_of(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& n) { return norm2(n) > 0; });
+  if (!given || cloud.normals.size() != cloud.positions.size()) {
+    cloud.normals = estimate_normals(cloud.positions, {}, nullptr, context);
+    words += "; normals estimated";
+  }
+  inputs.clouds.push_back({name, std::move(words), std::make_shared<const PointCloud>(std::move(cloud))});
+}
+
 void read_model(InputFiles& inputs, const std::string& path, const std::string& name) {
   Model model = load_model(path);
   if (auto* terrain = std::get_if<Terrain>(&model)) {
@@ -77,6 +92,8 @@ InputFiles read_inputs(const std::vector<std::string>& paths, const Context& con
       read_model(inputs, path, name);
     else if (std::filesystem::path(path).extension() == ".json")
       add_tetraquad(inputs, name, read_quadrics(path));
+    else if (is_point_file(path))
+      add_cloud(inputs, path, name, context);
     else
       inputs.terrains.push_back(read_grid(path, name, context));
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calls.h"
+#include "retalho/cloud/cloud.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/terrain.h"
 #include "retalho/tetraquad/tetraquad.h"
@@ -29,10 +30,17 @@ struct TetraQuadInput {
   std::shared_ptr<const TetraQuad> surface;
 };
 
+/// Points in space, with normals (estimated where the file has none), to be reconstructed as a TetraQuad.
+struct CloudInput {
+  std::string name, described;
+  std::shared_ptr<const PointCloud> cloud;
+};
+
 struct InputFiles {
   std::vector<TerrainInput> terrains;
   bool terrains_given = true;  ///< false: the only terrain is the example
   std::vector<TetraQuadInput> tetraquads;
+  std::vector<CloudInput> clouds;
 };
 
 /// Reads `paths`; with none, the terrain is an example made by formula. Throws as the readers do, and BadInput for a

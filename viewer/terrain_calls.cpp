@@ -84,6 +84,39 @@ std::vector<float> edge_lines(const FittedModel& model, Vec3 origin) {
   return lines;
 }
 
+/// The triangulation itself, with the surface's normals at its vertices: what is drawn when there are so many pieces
+/// that cutting them finer is more than the page can hold.
+TriangleMesh vertices_mesh(const Terrain& terrain) {
+  TriangleMesh mesh;
+  for (const auto& t : terrain.tin.triangles) {
+    const Vec2 centre = (terrain.tin.points[t[0]] + terrain.tin.points[t[1]] + terrain.tin.points[t[2]]) / 3;
+    if (terrain.grid.has_data(centre)) mesh.triangles.push_back(t);
+  }
+  for (std::size_t v = 0; v < terrain.tin.vertex_count(); ++v) {
+    const Vec2 p = terrain.tin.points[v];
+    mesh.positions.push_back({p.x, p.y, terrain.tin.heights[v]});
+    mesh.normals.push_back(unit_normal(terrain.gradients[v]));
+  }
+  return mesh;
+}
+
+/// As fine as the budget of triangles lets it be, at best within 1/2000 of the range of heights. `tolerance` gets what
+/// was worked to; 0: the triangulation itself.
+TriangleMesh drawn_mesh(const Terrain& terrain, HeightRange range, std::size_t budget, double& tolerance,
+                        const Context& context) {
+  const std::size_t pieces =
+      terrain.tin.triangle_count() * static_cast<std::size_t>(patches_per_triangle(terrain.kind));
+  if (terrain.kind != SurfaceKind::linear && pieces > budget) return vertices_mesh(terrain);
+  tolerance = mesh_tolerance(terrain, {.tolerance = std::max(1e-9, (range.high - range.low) / 2000)});
+  for (;;) {
+    context.check();
+    TriangleMesh mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
+    if (mesh.triangles.size() <= std::max(budget, pieces)) return mesh;
+    // The number of triangles goes with one over the tolerance.
+    tolerance *= std::max(1.5, static_cast<double>(mesh.triangles.size()) / static_cast<double>(budget));
+  }
+}
+
 Answer files_call(const Models& models) {
   Json list = Json::array();
   for (std::size_t i = 0; i < models.inputs().size(); ++i) {
@@ -117,14 +150,8 @@ Answer fit_call(Models& models, const Json& input, const Context& context) {
   const auto budget = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
   const Terrain& terrain = *model->terrain;
   const HeightRange range = heights_of(terrain);
-  double tolerance = mesh_tolerance(terrain, {.tolerance = std::max(1e-9, (range.high - range.low) / 2000)});
-  TriangleMesh mesh;
-  for (int tries = 0; tries < 8; ++tries) {
-    context.check();
-    mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
-    if (mesh.triangles.size() <= std::max(budget, terrain.tin.triangle_count())) break;
-    tolerance *= 3;
-  }
+  double tolerance = 0;
+  const TriangleMesh mesh = drawn_mesh(terrain, range, budget, tolerance, context);
   const Vec3 origin = origin_of(models, model->file);
   std::vector<float> positions, normals;
   positions.reserve(mesh.positions.size() * 3);

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <mutex>
 
 #include "retalho/core/error.h"
 #include "retalho/tetraquad/document.h"
+#include "retalho/tetraquad/fit.h"
 #include "retalho/tetraquad/rays.h"
 #include "retalho/tetraquad/tetraquad.h"
 
@@ -33,22 +35,63 @@ using LoadedPointer = std::shared_ptr<const Loaded>;
 
 class Surfaces {
  public:
-  explicit Surfaces(std::vector<TetraQuadInput> inputs) : inputs_(std::move(inputs)) {}
+  explicit Surfaces(const InputFiles& inputs) : inputs_(inputs.tetraquads), clouds_(inputs.clouds) {}
 
   const std::vector<TetraQuadInput>& inputs() const { return inputs_; }
+  const std::vector<CloudInput>& clouds() const { return clouds_; }
+
+  /// {"cloud": k, "resolution": n}: fits, and keeps the surface for load().
+  TetraQuadFitReport reconstruct(const Json& input, const Context& context) {
+    const Made wanted = made_of(input);
+    TetraQuadFitReport report;
+    TetraQuad surface =
+        fit_tetraquad(*clouds_[wanted.cloud].cloud, {.resolution = wanted.resolution}, &report, context);
+    const std::lock_guard lock(mutex_);
+    made_.push_front({wanted, std::make_shared<const TetraQuad>(std::move(surface))});
+    if (made_.size() > kMostMade) made_.pop_back();
+    return report;
+  }
 
   /// {"file": k} or {"document": {...}}; the last one is kept.
   LoadedPointer load(const Json& input, const Context& context) {
     const bool written = input.contains("document");
+    if (input.contains("cloud")) {
+      const Made wanted = made_of(input);
+      return keep(fmt::format("cloud {} {}", wanted.cloud, wanted.resolution), find_made(wanted), context);
+    }
     const std::size_t file =
         written ? 0 : static_cast<std::size_t>(whole(input, "file", 0, static_cast<std::int64_t>(inputs_.size()) - 1));
     const std::string key = written ? input.at("document").dump() : fmt::format("file {}", file);
+    return keep(key, written ? nullptr : inputs_[file].surface, context);
+  }
+
+ private:
+  struct Made {
+    std::size_t cloud = 0;
+    int resolution = 0;
+    friend bool operator==(const Made&, const Made&) = default;
+  };
+  static constexpr std::size_t kMostMade = 6;
+
+  Made made_of(const Json& input) const {
+    return {static_cast<std::size_t>(whole(input, "cloud", 0, static_cast<std::int64_t>(clouds_.size()) - 1)),
+            static_cast<int>(whole(input, "resolution", 2, 64))};
+  }
+
+  std::shared_ptr<const TetraQuad> find_made(const Made& wanted) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [made, surface] : made_)
+      if (made == wanted) return surface;
+    throw BadInput("this reconstruction is no longer kept: make it again", {}, "resolution");
+  }
+
+  /// `given` is null for a document, which is its own key.
+  LoadedPointer keep(const std::string& key, std::shared_ptr<const TetraQuad> given, const Context& context) {
     const std::lock_guard lock(mutex_);
     if (last_ && last_->key == key) return last_;
     auto loaded = std::make_shared<Loaded>();
     loaded->key = key;
-    loaded->surface =
-        written ? std::make_shared<const TetraQuad>(parse_quadrics(key, "the document")) : inputs_[file].surface;
+    loaded->surface = given ? std::move(given) : std::make_shared<const TetraQuad>(parse_quadrics(key, "the document"));
     const TetMesh& mesh = loaded->surface->mesh;
     if (mesh.tets.size() > kMostTets)
       throw BadInput(fmt::format("{} tetrahedra are more than the page draws ({})", mesh.tets.size(), kMostTets));
@@ -65,9 +108,10 @@ class Surfaces {
     return last_;
   }
 
- private:
   std::vector<TetraQuadInput> inputs_;
-  std::mutex mutex_;
+  std::vector<CloudInput> clouds_;
+  mutable std::mutex mutex_;
+  std::deque<std::pair<Made, std::shared_ptr<const TetraQuad>>> made_;
   LoadedPointer last_;
 };
 
@@ -144,13 +188,27 @@ Answer ray_call(Surfaces& surfaces, const Json& input, const Context& context) {
 }  // namespace
 
 void add_tetraquad_calls(CallTable& table, const InputFiles& inputs) {
-  const auto surfaces = std::make_shared<Surfaces>(inputs.tetraquads);
+  const auto surfaces = std::make_shared<Surfaces>(inputs);
   table["/api/tetraquads/files"] = {Call::Kind::quick, [surfaces](const Json&, const Context&) {
                                       Json list = Json::array();
                                       for (const TetraQuadInput& one : surfaces->inputs())
                                         list.push_back({{"name", one.name}, {"described", one.described}});
-                                      return Answer{{{"files", list}}};
+                                      Json clouds = Json::array();
+                                      for (const CloudInput& one : surfaces->clouds())
+                                        clouds.push_back({{"name", one.name}, {"described", one.described}});
+                                      return Answer{{{"files", list}, {"clouds", clouds}}};
                                     }};
+  table["/api/tetraquads/reconstruct"] = {Call::Kind::slow, [surfaces](const Json& input, const Context& context) {
+                                            const TetraQuadFitReport report = surfaces->reconstruct(input, context);
+                                            return Answer{{{"points", report.points},
+                                                           {"used", report.used},
+                                                           {"vertices", report.vertices},
+                                                           {"tetrahedra", report.tetrahedra},
+                                                           {"coefficients", report.coefficients},
+                                                           {"residual_mean", report.residual_mean},
+                                                           {"residual_max", report.residual_max},
+                                                           {"warnings", report.warnings}}};
+                                          }};
   table["/api/tetraquads/load"] = {Call::Kind::quick, [surfaces](const Json& input, const Context& context) {
                                      return load_call(*surfaces, input, context);
                                    }};

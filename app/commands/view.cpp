@@ -21,6 +21,7 @@ void run(const Program& program, const Options& options) {
   for (const viewer::TerrainInput& one : inputs.terrains) program.say(fmt::format("{}: {}", one.name, one.described));
   for (const viewer::TetraQuadInput& one : inputs.tetraquads)
     program.say(fmt::format("{}: {}", one.name, one.described));
+  for (const viewer::CloudInput& one : inputs.clouds) program.say(fmt::format("{}: {}", one.name, one.described));
   program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
   BrowserDoor door;
   viewer::serve(inputs, program.threads, cancel_flag(), [&](const std::string& address) {
@@ -46,7 +47,7 @@ void add_view(CLI::App& root, Program& program) {
                                   "retalho view --no-browser dem.tif");
   command
       ->add_option("FILE", options->files,
-                   "Elevation grids, models of terrains and TetraQuads, quadrics as JSON (none: examples)")
+                   "Elevation grids, models of terrains and TetraQuads, quadrics as JSON, clouds (none: examples)")
       ->type_name("");
   command->add_flag("--no-browser", options->no_browser, "Print the address on standard output and open nothing");
   command->callback([options, &program] { run(program, *options); });

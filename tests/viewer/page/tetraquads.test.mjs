@@ -1,6 +1,6 @@
 // The TetraQuad view: the shader's hits against the program's ray caster, and its edits against `retalho reconstruct`.
 import assert from 'node:assert/strict';
-import {mkdtempSync, rmSync} from 'node:fs';
+import {mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -106,6 +106,38 @@ export const tests = [
     await page.keyboard.press('Control+z');
     await view.quiet();
   })],
+
+  ['points become a surface, coarse first and then finer, as `retalho reconstruct` makes it', async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'retalho-points-'));
+    const cloud = join(folder, 'egg.xyz');
+    let text = 'x,y,z,nx,ny,nz\n';
+    for (let k = 0; k < 4000; ++k) {  // a spiral on an ellipsoid
+      const z = 1 - (2 * k + 1) / 4000, r = Math.sqrt(1 - z * z), a = k * 2.399963;
+      const [x, y] = [r * Math.cos(a), r * Math.sin(a)];
+      text += [1.4 * x, y, 0.8 * z, x / 1.4, y, z / 0.8].map((v) => v.toFixed(7)).join(',') + '\n';
+    }
+    writeFileSync(cloud, text);
+    try {
+      await withPage([cloud], async ({view, page, bar}) => {
+        await page.locator('input[type=number][aria-label^="Resolution"]').fill('10');
+        await page.keyboard.press('Enter');
+        await view.quiet();
+        const shown = await listed(bar.locator('.facts'));
+        const answer = retalho('reconstruct', cloud, '-o', join(folder, 'egg.ply'), '--resolution', '10');
+        assert.equal(Number(shown.resolution), 10);
+        assert.equal(Number(shown.tetrahedra), answer.tetrahedra);
+        assert.equal(Number(shown.points), 4000);
+        assert.ok(Math.abs(Number(shown['mean distance of the points']) - answer.residual_mean) < 1e-3 * answer.residual_mean);
+        await bar.getByLabel('Ask where one clicks').check();
+        const {hits, worst, misses} = await probe(view, bar, 2, 1);
+        console.log(`   egg: ${hits} rays hit, largest difference ${worst} of a cell`);
+        assert.ok(hits === 2 && worst <= LIMIT && misses === 0);
+        await view.picture('tetraquads-points');
+      });
+    } finally {
+      rmSync(folder, {recursive: true});
+    }
+  }],
 
   ['a file of quadrics given on the command line', () => withPage([fileURLToPath(new URL('../../../examples/tetraquads/ellipsoids-4.json', import.meta.url))], async ({view, bar}) => {
     assert.equal((await listed(bar.locator('.facts'))).tetrahedra, '1');

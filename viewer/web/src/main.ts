@@ -36,16 +36,18 @@ function linkedState(first: PageState): PageState {
 async function start(): Promise<void> {
   if (!takeToken()) return fail('This address lacks its token. Use the whole address that `retalho view` printed.');
   page.replaceChildren(make('main', {class: 'failure'}, make('p', {}, 'Asking the program what it has opened …')));
-  let files: FileInfo[], tetraFiles: TetraFile[], given: boolean;
+  let files: FileInfo[], tetraFiles: TetraFile[], clouds: TetraFile[], given: boolean;
   try {
     const {words} = await ask('/api/terrain/files');
     files = words.files as FileInfo[];
     given = words.given as boolean;
-    tetraFiles = (await ask('/api/tetraquads/files')).words.files as TetraFile[];
+    const tetra = (await ask('/api/tetraquads/files')).words;
+    tetraFiles = tetra.files as TetraFile[];
+    clouds = tetra.clouds as TetraFile[];
   } catch (error) {
     return fail(error instanceof CallError ? `${error.message}.` : String(error));
   }
-  const first: PageState = {theme: 'auto', view: given ? 'terrain' : tetraFiles.length > 0 ? 'tetraquads' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves(), patches: firstPatches(), tetraquads: {...firstTetraQuads(), file: tetraFiles.length > 0 ? 0 : -1}};
+  const first: PageState = {theme: 'auto', view: given ? 'terrain' : tetraFiles.length + clouds.length > 0 ? 'tetraquads' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves(), patches: firstPatches(), tetraquads: {...firstTetraQuads(), file: tetraFiles.length > 0 ? 0 : -1, cloud: tetraFiles.length === 0 && clouds.length > 0 ? 0 : -1}};
   const history = new History<PageState>(linkedState(first));
   if (!files[history.state.terrain.file]) history.change((s) => { s.terrain = first.terrain; }, {silent: true});
 
@@ -57,7 +59,7 @@ async function start(): Promise<void> {
       (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
       (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true}));
     patches = new PatchesView(history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks);
-    tetraquads = new TetraQuadsView(tetraFiles, history.state.tetraquads, (change, options) => history.change((s) => change(s.tetraquads), options), tasks);
+    tetraquads = new TetraQuadsView(tetraFiles, clouds, history.state.tetraquads, (change, options) => history.change((s) => change(s.tetraquads), options), tasks);
   } catch {
     return fail('This browser gives no WebGL 2 here, which the pictures need. Another browser, or its hardware acceleration, may help.');
   }

@@ -8,7 +8,7 @@ import {editable, firstPatches, handles, movePoint, PATCH_PRESETS, robustRange} 
 import {rampBytes, rampColour} from '../src/ramps';
 import {decoded, encoded, merged} from '../src/state';
 import {ticks} from '../src/terrain/profile';
-import {setTerm, termsOf, TETRA_PRESETS} from '../src/tetraquads/state';
+import {coarseToFine, setTerm, termsOf, TETRA_PRESETS} from '../src/tetraquads/state';
 import {fitRequest, firstLook, roundStep, SIDE_BY_SIDE, type FileInfo} from '../src/terrain/state';
 
 test('events are split, and what is incomplete waits', () => {
@@ -185,4 +185,13 @@ test('a vertex gets a quadric of its own when one of its terms is set, and the o
   assert.deepEqual(termsOf(document, [1, 1, 0]), {xx: 2, yy: 1, zz: 1, '1': -0.3, xy: 0.5});
   assert.deepEqual(termsOf(document, [0, 0, 0]), {xx: 1, yy: 1, zz: 1, '1': -0.3});
   assert.equal(document.quadrics?.length, 1);
+});
+
+test('a reconstruction goes from coarse to fine and ends where it was asked to', () => {
+  for (let last = 8; last <= 48; ++last) {
+    const steps = coarseToFine(last);
+    assert.equal(steps.at(-1), last);
+    for (let k = 1; k < steps.length; ++k) assert.ok(steps[k] > steps[k - 1]);
+  }
+  assert.deepEqual(coarseToFine(24), [8, 13, 20, 24]);
 });

@@ -48,17 +48,14 @@ float quadric(int i, vec3 p, out vec3 gradient) {
   return f0[i].x + dot(f0[i].yzw, d) + dot(f1[i].xyz, d * d) + f1[i].w * d.x * d.y + f2[i].x * d.x * d.z + f2[i].y * d.y * d.z;
 }
 
-float field(vec3 p, vec3 base, out vec3 gradient) {
-  float value = 0.0;
+void field(vec3 p, vec3 base, out vec3 gradient) {
   gradient = vec3(0.0);
   for (int i = 0; i < 4; ++i) {
     vec3 g;
     float q = quadric(i, p, g);
     float b = b0[i] + dot(gradB[i], p - base);
-    value += b * q;
     gradient += gradB[i] * q + b * g;
   }
-  return value;
 }
 
 void main() {
@@ -94,11 +91,22 @@ void main() {
   else if (side < 0.0) discard;
   if (!(from < to)) discard;
 
-  vec3 g;
-  vec3 p0 = at + from * d, step3 = (to - from) * d;
-  float v0 = field(p0, base, g), v1 = field(p0 + step3 / 3.0, base, g), v2 = field(p0 + step3 * (2.0 / 3.0), base, g), v3 = field(p0 + step3, base, g);
-  // The cubic through the four values, in powers of s in [0, 1].
-  float a0 = v0, a1 = -5.5 * v0 + 9.0 * v1 - 4.5 * v2 + v3, a2 = 9.0 * v0 - 22.5 * v1 + 18.0 * v2 - 4.5 * v3, a3 = -4.5 * v0 + 13.5 * v1 - 13.5 * v2 + 4.5 * v3;
+  // Along the ray each b_i is linear and each quadric a parabola in s in [0, 1]: their products are the cubic's powers.
+  vec3 p0 = at + from * d, way = (to - from) * d;
+  float a0 = 0.0, a1 = 0.0, a2 = 0.0, a3 = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    vec3 slope;
+    float c0 = quadric(i, p0, slope), c1 = dot(slope, way);
+    float c2 = dot(f1[i].xyz, way * way) + f1[i].w * way.x * way.y + f2[i].x * way.x * way.z + f2[i].y * way.y * way.z;
+    float e0 = b0[i] + dot(gradB[i], p0 - base), e1 = dot(gradB[i], way);
+    a0 += e0 * c0;
+    a1 += e0 * c1 + e1 * c0;
+    a2 += e0 * c2 + e1 * c1;
+    a3 += e1 * c2;
+  }
+  // Bernstein's bound: with all four ordinates of one sign there is no root.
+  vec4 ordinates = vec4(a0, a0 + a1 / 3.0, a0 + (2.0 * a1 + a2) / 3.0, a0 + a1 + a2 + a3);
+  if (all(lessThan(ordinates, vec4(0.0))) || all(greaterThanEqual(ordinates, vec4(0.0)))) discard;
   // It is monotone between the roots of its derivative: the first interval with a change of sign has the first root.
   float r1 = 1.0, r2 = 1.0, A = 3.0 * a3, B = 2.0 * a2, C = a1;
   float disc = B * B - 4.0 * A * C;
@@ -128,7 +136,7 @@ void main() {
     float next = s - f / slope;
     s = next > lo && next < hi ? next : 0.5 * (lo + hi);
   }
-  vec3 hit = p0 + s * step3;
+  vec3 hit = p0 + s * way, g;
   field(hit, base, g);
   vec4 clip = projectionMatrix * modelViewMatrix * vec4(hit, 1.0);
   gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;

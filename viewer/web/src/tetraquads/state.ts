@@ -19,6 +19,8 @@ export interface QuadricDocument {
 
 export interface TetraQuadsState {
   file: number;  // of the command line; -1: the document
+  cloud: number;  // of the command line; -1: none
+  resolution: number;
   document: QuadricDocument;
   vertex: number[] | null;
   edges: boolean;
@@ -41,7 +43,14 @@ export const TETRA_PRESETS: [name: string, document: QuadricDocument][] = [
 ];
 
 export function firstTetraQuads(): TetraQuadsState {
-  return {file: -1, document: structuredClone(TETRA_PRESETS[0][1]), vertex: null, edges: true, onSurface: false, cutAxis: 'none', cut: 0.5, ask: false, asked: null, camera: null};
+  return {file: -1, cloud: -1, resolution: 24, document: structuredClone(TETRA_PRESETS[0][1]), vertex: null, edges: true, onSurface: false, cutAxis: 'none', cut: 0.5, ask: false, asked: null, camera: null};
+}
+
+/** From coarse to fine: the resolutions at which a cloud is reconstructed until `last`. */
+export function coarseToFine(last: number): number[] {
+  const steps: number[] = [];
+  for (let r = 8; r < last; r *= 1.6) steps.push(Math.round(r));
+  return [...steps.filter((r) => r < 0.85 * last), last];
 }
 
 /** The quadric of a lattice vertex as the document has it. */

@@ -1,9 +1,9 @@
 // The TetraQuad view: the surface by ray casting, its quadrics to change, and each click asked of the program as well.
-import {ask} from '../api';
+import {ask, work} from '../api';
 import {choice, download, make, say, slider, table, toggle} from '../dom';
 import type {Tasks} from '../tasks';
 import {TetraQuadScene} from './scene';
-import {setTerm, termsOf, TERMS, TETRA_PRESETS, type QuadricDocument, type TetraQuadsState, type Term} from './state';
+import {coarseToFine, setTerm, termsOf, TERMS, TETRA_PRESETS, type QuadricDocument, type TetraQuadsState, type Term} from './state';
 
 export type Edit = (change: (state: TetraQuadsState) => void, options?: {group?: string; silent?: boolean}) => void;
 
@@ -39,15 +39,18 @@ export class TetraQuadsView {
   private readonly words = make('p', {class: 'hint error-words', role: 'alert'});
   private loaded: {words: LoadWords; vertices: Float32Array} | null = null;
   private point: number[] | null = null;
+  private made: {cloud: number; resolution: number; words: Record<string, unknown>} | null = null;
+  private readonly resolution = slider('Resolution, cubes along the longest side', '', (v) => this.edit((s) => { s.resolution = Math.round(v); }, {group: 'resolution'}));
   private framedFor = '';
   private loadedFor = '';
   private shownVertices = '';
 
-  constructor(private files: TetraFile[], private state: TetraQuadsState, private edit: Edit, private tasks: Tasks) {
+  constructor(private files: TetraFile[], private clouds: TetraFile[], private state: TetraQuadsState, private edit: Edit, private tasks: Tasks) {
     this.scene = new TetraQuadScene(this.stage, (camera) => this.edit((s) => { s.camera = camera; }, {silent: true}), (event) => this.clicked(event));
-    this.source = choice('Surface', [['', 'a document of one’s own'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...TETRA_PRESETS.map(([name], k): [string, string] => [`preset ${k}`, `Example: ${name}`])], (v) => {
+    this.source = choice('Surface', [['', 'a document of one’s own'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...clouds.map((file, k): [string, string] => [`cloud ${k}`, `Points: ${file.name}`]), ...TETRA_PRESETS.map(([name], k): [string, string] => [`preset ${k}`, `Example: ${name}`])], (v) => {
       const [kind, k] = v.split(' ');
-      if (kind === 'file') this.edit((s) => { s.file = Number(k); s.vertex = null; s.asked = null; s.camera = null; });
+      if (kind === 'file') this.edit((s) => { s.file = Number(k); s.cloud = -1; s.vertex = null; s.asked = null; s.camera = null; });
+      if (kind === 'cloud') this.edit((s) => { s.cloud = Number(k); s.file = -1; s.vertex = null; s.asked = null; s.camera = null; });
       if (kind === 'preset') this.open(TETRA_PRESETS[Number(k)][1]);
     });
     this.edges = toggle('Edges of the tetrahedra', (on) => this.edit((s) => { s.edges = on; }));
@@ -55,6 +58,7 @@ export class TetraQuadsView {
     this.cutAxis = choice('Cut', [['none', 'whole'], ['x', 'across x'], ['y', 'across y'], ['z', 'across z']], (v) => this.edit((s) => { s.cutAxis = v as TetraQuadsState['cutAxis']; }));
     this.cut = slider('Where, as a share of the box', '', (v) => this.edit((s) => { s.cut = v; }, {group: 'cut'}));
     this.cut.limits(0, 1, 0.005);
+    this.resolution.limits(8, 48, 1);
     this.askToggle = toggle('Ask where one clicks', (on) => this.edit((s) => { s.ask = on; }, {silent: true}));
     for (const term of TERMS) {
       const one = slider(term === '1' ? 'constant' : term, '', (v) => this.edit((s) => { if (s.vertex) setTerm(s.document, s.vertex, term, v); }, {group: `term ${term}`}));
@@ -75,7 +79,7 @@ export class TetraQuadsView {
       }
       input.value = '';
     }});
-    this.element = make('div', {class: 'controls'}, this.source.element, this.facts,
+    this.element = make('div', {class: 'controls'}, this.source.element, this.resolution.element, this.facts,
       section('Picture', this.edges.element, this.onSurface.element, this.cutAxis.element, this.cut.element),
       section('Question', this.askToggle.element, this.readout),
       section('Quadric of a vertex', this.editor),
@@ -85,10 +89,14 @@ export class TetraQuadsView {
   }
 
   open(document: QuadricDocument): void {
-    this.edit((s) => { s.file = -1; s.document = structuredClone(document); s.vertex = null; s.asked = null; s.camera = null; });
+    this.edit((s) => { s.file = -1; s.cloud = -1; s.document = structuredClone(document); s.vertex = null; s.asked = null; s.camera = null; });
   }
 
-  private request(): Record<string, unknown> {
+  /** What is to be shown now; nothing while the first, coarse reconstruction of a cloud is on its way. */
+  private request(): Record<string, unknown> | null {
+    if (this.state.cloud >= 0 && this.state.cloud < this.clouds.length) {
+      return this.made && this.made.cloud === this.state.cloud ? {cloud: this.made.cloud, resolution: this.made.resolution} : null;
+    }
     return this.state.file >= 0 && this.state.file < this.files.length ? {file: this.state.file} : {document: this.state.document};
   }
 
@@ -97,12 +105,33 @@ export class TetraQuadsView {
     this.stage.hidden = this.element.hidden = !active;
     this.scene.visible(active);
     if (!active) return;
+    const wanted = state.cloud >= 0 ? {cloud: state.cloud, resolution: state.resolution} : null;
+    this.tasks.want('reconstruct', 'Reconstructing', wanted && JSON.stringify(wanted), async (signal, progress) => {
+      for (const resolution of coarseToFine(state.resolution)) {
+        const {words} = await work('/api/tetraquads/reconstruct', {cloud: state.cloud, resolution}, (stage, fraction) => progress(`resolution ${resolution}, ${stage}`, fraction), signal);
+        this.made = {cloud: state.cloud, resolution, words};
+        this.show(this.state, !this.stage.hidden);
+      }
+    });
+    this.resolution.element.hidden = state.cloud < 0;
+    this.resolution.show(state.resolution);
     const request = this.request();
+    if (request) this.load(request, state);
+    const asked = state.asked && request && this.loadedFor === JSON.stringify(request) ? {...request, origin: state.asked.origin, direction: state.asked.direction, ...this.span(state)} : null;
+    this.tasks.want('ray', 'Asking', asked && JSON.stringify(asked), async (signal) => this.takeRay((await ask('/api/tetraquads/ray', asked ?? {}, signal)).words));
+    if (!state.asked) {
+      this.point = null;
+      this.readout.replaceChildren();
+    }
+    this.showControls(state);
+  }
+
+  private load(request: Record<string, unknown>, state: TetraQuadsState): void {
     this.tasks.want('tetraquads', 'Reading the quadrics', JSON.stringify(request), async (signal) => {
       const answer = await ask('/api/tetraquads/load', request, signal);
       this.loaded = {words: answer.words as unknown as LoadWords, vertices: answer.arrays.vertices as Float32Array};
       this.scene.take(answer);
-      const shape = 'file' in request ? JSON.stringify(request) : JSON.stringify([state.document.tetrahedra, state.document.step, state.document.origin]);
+      const shape = 'cloud' in request ? `cloud ${request.cloud}` : 'file' in request ? JSON.stringify(request) : JSON.stringify([state.document.tetrahedra, state.document.step, state.document.origin]);
       if (this.framedFor !== shape) {
         this.scene.frame();
         if (this.state.camera) this.scene.setCamera(this.state.camera);
@@ -111,12 +140,9 @@ export class TetraQuadsView {
       this.loadedFor = JSON.stringify(request);
       this.show(this.state, !this.stage.hidden);
     });
-    const asked = state.asked && this.loadedFor === JSON.stringify(request) ? {...request, origin: state.asked.origin, direction: state.asked.direction, ...this.span(state)} : null;
-    this.tasks.want('ray', 'Asking', asked && JSON.stringify(asked), async (signal) => this.takeRay((await ask('/api/tetraquads/ray', asked ?? {}, signal)).words));
-    if (!state.asked) {
-      this.point = null;
-      this.readout.replaceChildren();
-    }
+  }
+
+  private showControls(state: TetraQuadsState): void {
     this.edges.show(state.edges);
     this.onSurface.show(state.onSurface);
     this.cutAxis.show(state.cutAxis);
@@ -124,7 +150,7 @@ export class TetraQuadsView {
     this.cut.element.hidden = state.cutAxis === 'none';
     this.askToggle.show(state.ask);
     const preset = TETRA_PRESETS.findIndex(([, document]) => JSON.stringify(document) === JSON.stringify(state.document));
-    this.source.show(state.file >= 0 ? `file ${state.file}` : preset >= 0 ? `preset ${preset}` : '');
+    this.source.show(state.cloud >= 0 ? `cloud ${state.cloud}` : state.file >= 0 ? `file ${state.file}` : preset >= 0 ? `preset ${preset}` : '');
     this.showLoaded();
   }
 
@@ -160,6 +186,12 @@ export class TetraQuadsView {
     this.scene.show(this.state, this.vertexPlace(), this.point);
   }
 
+  private madeRows(): [string, string][] {
+    if (this.state.cloud < 0 || !this.made) return [];
+    const {words, resolution} = this.made;
+    return [['resolution', say(resolution)], ['points', say(words.points, 9)], ['mean distance of the points', say(words.residual_mean, 4)], ['largest', say(words.residual_max, 4)]];
+  }
+
   private vertexPlace(): number[] | null {
     const {vertex} = this.state;
     if (!this.loaded || !vertex) return null;
@@ -170,8 +202,8 @@ export class TetraQuadsView {
   private showLoaded(): void {
     if (!this.loaded) return;
     const {words} = this.loaded, {state} = this;
-    this.facts.replaceChildren(table([['vertices', say(words.vertices)], ['tetrahedra', say(words.tetrahedra)], ['that the surface may cross', say(words.crossed)], ['step', say(words.step)]]));
-    this.editor.hidden = state.file >= 0;
+    this.facts.replaceChildren(table([['vertices', say(words.vertices)], ['tetrahedra', say(words.tetrahedra)], ['that the surface may cross', say(words.crossed)], ['step', say(words.step)], ...this.madeRows()]));
+    this.editor.hidden = state.file >= 0 || state.cloud >= 0;
     const names = JSON.stringify(words.lattice);
     if (names !== this.shownVertices) {
       this.shownVertices = names;
