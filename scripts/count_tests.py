@@ -3,7 +3,7 @@
 
   scripts/count_tests.py FOLDER [NAME=passed|failed ...]
 
-FOLDER holds ctest.xml (ctest --output-junit) and a GoogleTest report test_<room>*.xml for each test program. Counted
+FOLDER holds ctest.xml (ctest --output-junit) and a GoogleTest (or pytest) report test_<room>*.xml for each test program. Counted
 are GoogleTest's cases; a ctest test without a report, and each NAME, is one case. A program that ended badly although
 its report shows no failure (a crash, a time limit, a sanitizer at exit) is one failed case. No test at all is a failure.
 The exit code is 1 if anything failed.
@@ -34,11 +34,11 @@ def main():
             counted = True
             for case in content.iter("testcase"):
                 reason = case.find("skipped")
-                if case.find("failure") is not None:
+                if case.find("failure") is not None or case.find("error") is not None:
                     failed.append(f"{name}: {case.get('classname')}.{case.get('name')}")
                 elif reason is not None:
                     skipped[reason.get("message", "").strip().split("\n")[-1] or "without a reason"] += 1
-                elif case.get("status") == "run":
+                elif case.get("status", "run") == "run":  # pytest's have none
                     passed += 1
         if status == "run" and not counted:
             passed += 1

@@ -1,0 +1,223 @@
+// retalho.fit and retalho.fit_points: what `retalho fit` does, on arrays.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.h"
+#include "grid.h"
+#include "retalho/core/error.h"
+#include "retalho/raster/gdal.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/terrain/least_squares.h"
+#include "retalho/terrain/surface_refine.h"
+#include "retalho/tin/refine.h"
+#include "retalho/tin/scattered.h"
+#include "terrain.h"
+
+namespace py = pybind11;
+
+namespace retalho::python {
+namespace {
+
+constexpr double kDefaultShare = 0.01;  // of the height range, as the program's
+constexpr std::size_t kLeastVertices = 3;
+
+/// The options as Python gives them.
+struct Asked {
+  std::optional<double> max_error, ratio;
+  std::optional<long long> vertices;
+  std::string surface = "clough-tocher", cross_derivative = "perpendicular", fit = "interpolate", refine = "flat";
+  std::optional<std::string> gradients;
+
+  bool budget() const { return max_error || ratio || vertices; }
+};
+
+struct Budget {
+  double max_error = 0;
+  std::size_t vertices = 0;
+};
+
+/// `range`: of the heights; the default tolerance is a hundredth of it.
+Budget resolve(const Asked& asked, std::size_t cells, double range) {
+  Budget budget;
+  if (asked.vertices && asked.ratio)
+    throw UsageError("vertices and ratio say the same in two ways: give one of them", {}, "ratio");
+  if (asked.max_error && !(std::isfinite(*asked.max_error) && *asked.max_error >= 0))
+    throw UsageError(fmt::format("max_error must be 0 or more, not {}", *asked.max_error), {}, "max_error");
+  if (asked.vertices && *asked.vertices < static_cast<long long>(kLeastVertices))
+    throw UsageError(fmt::format("vertices must be {} or more, not {}", kLeastVertices, *asked.vertices), {},
+                     "vertices");
+  if (asked.ratio && !(*asked.ratio > 0 && *asked.ratio <= 1))
+    throw UsageError(fmt::format("ratio must be above 0 and at most 1, not {}", *asked.ratio), {}, "ratio");
+  if (asked.max_error) budget.max_error = *asked.max_error;
+  if (asked.vertices) budget.vertices = static_cast<std::size_t>(*asked.vertices);
+  if (asked.ratio)
+    budget.vertices =
+        std::max(kLeastVertices, static_cast<std::size_t>(std::llround(*asked.ratio * static_cast<double>(cells))));
+  if (!asked.budget()) budget.max_error = kDefaultShare * range;
+  return budget;
+}
+
+/// One of `choices`, or an error that lists them.
+std::string choose(const std::string& name, const std::string& word, std::initializer_list<const char*> choices) {
+  std::string list;
+  for (const char* choice : choices) {
+    if (word == choice) return word;
+    list += (list.empty() ? "'" : ", '") + std::string(choice) + "'";
+  }
+  throw UsageError(fmt::format("{} must be one of {}, not '{}'", name, list, word), {}, name);
+}
+
+SurfaceOptions surface_options(const Asked& asked, bool points) {
+  SurfaceOptions options;
+  options.surface = *parse_surface(choose("surface", asked.surface, {"linear", "powell-sabin", "clough-tocher"}));
+  options.gradients = *parse_gradients(choose("gradients", asked.gradients.value_or(points ? "quadratic" : "normals"),
+                                              {"normals", "quadratic", "network"}));
+  options.cross_derivative =
+      *parse_cross_derivative(choose("cross_derivative", asked.cross_derivative, {"perpendicular", "cubic"}));
+  return options;
+}
+
+/// Throws UsageError for what does not go together.
+void check_fit(const Asked& asked) {
+  choose("fit", asked.fit, {"interpolate", "least-squares", "z-only"});
+  choose("refine", asked.refine, {"flat", "surface"});
+  const bool fitted = asked.fit != "interpolate" || asked.refine == "surface";
+  if (!fitted) return;
+  if (asked.gradients)
+    throw UsageError("gradients exclude fit='least-squares', fit='z-only' and refine='surface', which set them", {},
+                     "gradients");
+  if (asked.cross_derivative != "perpendicular")
+    throw UsageError("a least-squares fit takes cross_derivative='perpendicular'", {}, "cross_derivative");
+  if (asked.refine == "surface" && asked.fit == "z-only")
+    throw UsageError("refine='surface' fits heights and gradients: fit='z-only' needs refine='flat'", {}, "fit");
+}
+
+Terrain fit_raster(const Raster& raster, const Asked& asked, const SurfaceOptions& surface, const Context& context) {
+  const RasterSummary summary = summarize(raster);
+  const Budget budget = resolve(asked, summary.valid, summary.valid > 0 ? summary.maximum - summary.minimum : 0);
+  Terrain terrain;
+  if (asked.refine == "surface") {
+    if (asked.max_error && *asked.max_error == 0)
+      throw UsageError("refine='surface' takes a max_error over 0", {}, "max_error");
+    terrain = refine_surface(
+        raster, {.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices}, context);
+  } else {
+    terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, context);
+    if (asked.fit != "interpolate")
+      terrain = fit_least_squares(std::move(terrain), raster, {.heights_only = asked.fit == "z-only"}, context);
+  }
+  terrain.tolerance = budget.max_error;
+  return terrain;
+}
+
+/// Local coordinates of points far out (as read_points has them), or of degrees.
+std::vector<Vec3> localize(std::vector<Vec3> points, const std::string& crs, Georef& georef) {
+  if (points.empty()) throw BadInput("there are no points", {}, "points");
+  Vec2 low{points[0].x, points[0].y}, high = low;
+  for (const Vec3& p : points) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw BadInput(fmt::format("points holds a coordinate that is not finite: ({}, {}, {})", p.x, p.y, p.z), {},
+                     "points");
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  std::vector<std::string> remarks;
+  if (!crs.empty()) describe_crs_text(crs, (low.y + high.y) / 2, georef, remarks);
+  const double size = std::max(high.x - low.x, high.y - low.y);
+  const double far = std::max({std::abs(low.x), std::abs(low.y), std::abs(high.x), std::abs(high.y)});
+  if (far > 1000 * size && !georef.geographic) {
+    georef.origin_x = std::round((low.x + high.x) / 2);
+    georef.origin_y = std::round((low.y + high.y) / 2);
+  }
+  for (Vec3& p : points) {
+    const Vec2 local = georef.to_local({p.x, p.y});
+    p = {local.x, local.y, p.z};
+  }
+  return points;
+}
+
+Terrain fit_cloud(const std::vector<Vec3>& points, const Georef& georef, const Asked& asked,
+                  const SurfaceOptions& surface, const Context& context) {
+  Tin tin;
+  double tolerance = 0;
+  if (asked.budget()) {
+    const auto [low, high] =
+        std::minmax_element(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
+    const Budget budget = resolve(asked, points.size(), high->z - low->z);
+    tolerance = budget.max_error;
+    tin = refine_points(points, {budget.max_error, budget.vertices}, nullptr, context);
+  } else {
+    tin = triangulate_points(points, nullptr, context);
+  }
+  Terrain terrain = make_terrain(std::move(tin), georef, surface, context);
+  terrain.tolerance = tolerance;
+  return terrain;
+}
+
+}  // namespace
+
+void add_fit(py::module_& module) {
+  module.def(
+      "fit",
+      [](const py::object& z, const py::object& transform, const py::object& crs, const py::object& nodata,
+         std::optional<double> max_error, std::optional<long long> vertices, std::optional<double> ratio,
+         const std::string& surface, std::optional<std::string> gradients, const std::string& cross_derivative,
+         const std::string& fit, const std::string& refine, int threads, const py::object& progress) {
+        const Asked asked{max_error, ratio, vertices, surface, cross_derivative, fit, refine, std::move(gradients)};
+        const SurfaceOptions options = surface_options(asked, false);
+        check_fit(asked);
+        resolve(asked, 1, 1);  // bad options are told before the grid is read
+        const Running running{threads, progress};
+        const auto raster = raster_of(z, {transform, crs, nodata}, running);
+        return std::make_shared<TerrainModel>(
+            run(running, [&](const Context& context) { return fit_raster(*raster, asked, options, context); }));
+      },
+      py::arg("z"), py::kw_only(), py::arg("transform") = py::none(), py::arg("crs") = py::none(),
+      py::arg("nodata") = py::none(), py::arg("max_error") = py::none(), py::arg("vertices") = py::none(),
+      py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher", py::arg("gradients") = py::none(),
+      py::arg("cross_derivative") = "perpendicular", py::arg("fit") = "interpolate", py::arg("refine") = "flat",
+      py::arg("threads") = 0, py::arg("progress") = py::none(),
+      "An elevation grid to a terrain model.\n\n"
+      "z: heights of shape (rows, columns), rows from north (array-like, masked array, DataArray, Grid or path); NaN "
+      "and masked cells hold no data. max_error: largest error of the flat triangulation at any valid cell, height "
+      "units (refine='surface': of the surface itself); vertices, ratio: a budget instead, or whichever comes first; "
+      "none of them: 1 % of the height range. surface: linear, powell-sabin or clough-tocher. gradients: normals, "
+      "quadratic or network. fit: interpolate, least-squares or z-only. Raises BadInput (a ValueError) for grids "
+      "without area, UsageError (a ValueError) for options. About 0.5 us a cell.");
+  module.def(
+      "fit_points",
+      [](const py::object& points, const py::object& crs, std::optional<double> max_error,
+         std::optional<long long> vertices, std::optional<double> ratio, const std::string& surface,
+         std::optional<std::string> gradients, const std::string& cross_derivative, int threads,
+         const py::object& progress) {
+        Asked asked;
+        asked.max_error = max_error;
+        asked.vertices = vertices;
+        asked.ratio = ratio;
+        asked.surface = surface;
+        asked.gradients = std::move(gradients);
+        asked.cross_derivative = cross_derivative;
+        const SurfaceOptions options = surface_options(asked, true);
+        resolve(asked, 1, 1);
+        Georef georef;
+        const std::vector<Vec3> local = localize(as_points3(points, "points"), crs_text(crs), georef);
+        return std::make_shared<TerrainModel>(run(Running{threads, progress}, [&](const Context& context) {
+          return fit_cloud(local, georef, asked, options, context);
+        }));
+      },
+      py::arg("points"), py::kw_only(), py::arg("crs") = py::none(), py::arg("max_error") = py::none(),
+      py::arg("vertices") = py::none(), py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher",
+      py::arg("gradients") = py::none(), py::arg("cross_derivative") = "perpendicular", py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "Survey points of shape (n, 3) - x, y in the CRS and height - to a terrain model on their Delaunay "
+      "triangulation.\n\nEvery point becomes a vertex, unless max_error, vertices or ratio keep fewer. Points that "
+      "repeat an (x, y) become one vertex with the mean height. gradients: quadratic (default), normals or network.");
+}
+
+}  // namespace retalho::python

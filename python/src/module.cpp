@@ -1,0 +1,32 @@
+// The extension module retalho._retalho: arguments, one call and arrays out. Nothing is computed here or in Python.
+#include <pybind11/pybind11.h>
+
+#include "bicubic.h"
+#include "contours.h"
+#include "curves.h"
+#include "errors.h"
+#include "grid.h"
+#include "mesh.h"
+#include "model.h"
+#include "patches.h"
+#include "terrain.h"
+#include "tetraquad.h"
+#include "visibility.h"
+
+PYBIND11_MODULE(_retalho, module) {
+  namespace python = retalho::python;
+  module.doc() = "Smooth surfaces made of polynomial patches.";
+  module.attr("__version__") = RETALHO_VERSION;
+  python::add_errors(module);
+  python::add_grid(module);
+  python::add_terrain(module);
+  python::add_fit(module);
+  python::add_bicubic(module);
+  python::add_contours(module);
+  python::add_visibility(module);
+  python::add_mesh(module);
+  python::add_curves(module);
+  python::add_patches(module);
+  python::add_tetraquad(module);
+  python::add_model(module);
+}
