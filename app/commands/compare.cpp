@@ -1,12 +1,11 @@
 // retalho compare: models, or the kinds of surface on one triangulation, against the grid that they stand for.
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "fitting.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
+#include "retalho/model/tiled.h"
 #include "retalho/tin/refine.h"
 #include "table.h"
 #include "visibility_errors.h"
@@ -69,7 +68,7 @@ std::vector<ModelReport> compare_models(const Options& options, const Raster& ra
     check_same_crs(terrain.georef, path, raster.georef, options.dem);
     ModelReport report = facts_of(terrain);
     report.name = path;
-    report.bytes = std::filesystem::file_size(path);
+    report.bytes = model_size(path);
     report.errors = assess(terrain, raster, terrain.tolerance, context);
     if (sight != nullptr) sight->add(terrain, report.name, context);
     reports.push_back(report);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "fit_tiles.h"
 #include "fitting.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
@@ -23,6 +24,7 @@ struct Options {
   PointOptions points;
   BudgetFlags budget;
   SurfaceFlags surface;
+  TileFlags tiles;
 };
 
 struct Fit {
@@ -105,6 +107,12 @@ std::string report_text(const ModelReport& report, const nlohmann::ordered_json&
 
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
+  if (options.tiles.size) {
+    if (takes_points(options.input, options.points)) throw UsageError("--tiles takes grids", {}, "--tiles");
+    return fit_tiles(program, options.tiles, options.input, options.output, options.grid, options.budget,
+                     options.surface);
+  }
+  if (options.tiles.jobs != 0) throw UsageError("--jobs goes with --tiles", {}, "--jobs");
   const SurfaceOptions surface = resolve(options.surface, takes_points(options.input, options.points));
   resolve_fit(options.surface, takes_points(options.input, options.points));
   refines_surface(options.surface, takes_points(options.input, options.points));
@@ -138,14 +146,18 @@ void add_fit(CLI::App& root, Program& program) {
                   "retalho fit dem.tif -o dem.retalho --max-error 2\n"
                   "retalho fit dem.tif -o flat.retalho --surface linear --ratio 1%\n"
                   "retalho fit dem.tif -o smooth.retalho --refine surface --ratio 1%\n"
+                  "retalho fit country.vrt -o country --tiles 2048 --max-error 1\n"
                   "retalho fit soundings.xyz -o seabed.retalho --surface powell-sabin\n"
                   "retalho fit survey.gpkg --height-field elevation -o site.retalho --max-error 0.1");
   command->add_option("DEM", options->input, "Elevation grid, or points (.xyz .csv .ply, vector layers)")
       ->required()
       ->type_name("");
-  command->add_option("-o,--output", options->output, "The model, ending in .retalho")->required()->type_name("FILE");
+  command->add_option("-o,--output", options->output, "The model, ending in .retalho; with --tiles a folder")
+      ->required()
+      ->type_name("FILE");
   add_budget_flags(*command, options->budget);
   add_surface_flags(*command, options->surface);
+  add_tile_flags(*command, options->tiles);
   add_grid_flags(*command, options->grid);
   command
       ->add_option("--height-field", options->points.height_field, "Vector layers: the attribute that holds the height")

@@ -8,6 +8,7 @@
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
+#include "retalho/model/tiled.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -100,7 +101,7 @@ Json model_info(const Options& options, const Terrain& terrain) {
                  {"patches", tin.triangle_count() * static_cast<std::size_t>(patches_per_triangle(terrain.kind))},
                  {"coefficients", coefficient_count(terrain)},
                  {"numbers", number_count(terrain)},
-                 {"bytes", std::filesystem::file_size(options.file)}};
+                 {"bytes", model_size(options.file)}};
   if (terrain.kind == SurfaceKind::clough_tocher)
     result["cross_derivative"] = terrain.cross_derivative == CrossDerivative::cubic ? "cubic" : "perpendicular";
   result["tolerance"] = terrain.tolerance > 0 ? Json(terrain.tolerance) : Json(nullptr);
@@ -143,7 +144,7 @@ Json model_info(const Options& options, const TetraQuad& surface) {
                  {"tetrahedra", surface.mesh.tets.size()},
                  {"crossed", crossed},
                  {"coefficients", 10 * std::count(live.begin(), live.end(), 1)},
-                 {"bytes", std::filesystem::file_size(options.file)}};
+                 {"bytes", model_size(options.file)}};
   add_place(result, surface.georef);
   if (crossed > 0) {  // of the tetrahedra that the surface passes through
     result["bounds"] = bounds_json(surface.georef, {low.x, low.y}, {high.x, high.y});
@@ -174,7 +175,7 @@ Json model_info(const Options& options, const PatchSet& set) {
           {"names", names},
           {"nodes", nodes},
           {"triangles", triangles},
-          {"bytes", std::filesystem::file_size(options.file)},
+          {"bytes", model_size(options.file)},
           {"bounds", {low.x, low.y, high.x, high.y}},
           {"minimum", low.z},
           {"maximum", high.z}};

@@ -11,6 +11,7 @@
 #include "patches.h"
 #include "terrain.h"
 #include "tetraquad.h"
+#include "tiles.h"
 #include "visibility.h"
 
 PYBIND11_MODULE(_retalho, module) {
@@ -29,4 +30,5 @@ PYBIND11_MODULE(_retalho, module) {
   python::add_patches(module);
   python::add_tetraquad(module);
   python::add_model(module);
+  python::add_tiles(module);
 }

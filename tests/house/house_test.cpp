@@ -16,7 +16,7 @@ void expect_none(const house::Breaches& breaches) {
 TEST(House, TheListOfRoomsIsTheArchitectures) {
   const auto rooms = house::rooms_of(kSource / "docs" / "architecture.md");
   EXPECT_EQ(fmt::format("{}", fmt::join(rooms, " ")),
-            "core bernstein raster cloud curve tin terrain level visibility patch tetraquad mesh model render");
+            "core bernstein raster cloud curve tin terrain level visibility patch tetraquad mesh model tiles render");
 }
 
 TEST(House, NoRoomUsesARoomBelowIt) {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/model/envelope.h"
 #include "retalho/model/model_codec.h"
+#include "retalho/model/tiled.h"
 
 namespace retalho {
 
@@ -34,10 +36,16 @@ void save_model(const Model& model, const std::string& path, bool overwrite) {
 }
 
 Model load_model(const std::string& path, ModelFileNotes* notes) {
+  std::error_code ec;
+  if (std::filesystem::is_directory(path, ec)) {
+    if (notes) *notes = {kFormatMajor, kFormatMinor, "tiles", model_size(path)};
+    return load_tiled_model(path);
+  }
   return decode_model(read_file(path), path, notes);
 }
 
 bool is_model_file(const std::string& path) {
+  if (is_tiled_model(path)) return true;
   std::ifstream in(path, std::ios::binary);
   char start[8];
   return in.read(start, sizeof start) && has_signature({start, sizeof start});

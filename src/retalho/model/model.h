@@ -35,9 +35,9 @@ Model decode_model(std::string_view bytes, const std::string& file = {}, ModelFi
 
 /// Atomic. Throws as encode_model does, and CannotWrite.
 void save_model(const Model& model, const std::string& path, bool overwrite = false);
-/// Throws CannotRead.
+/// A file, or the folder of a tiled model (model/tiled.h), whose tiles become one terrain. Throws CannotRead.
 Model load_model(const std::string& path, ModelFileNotes* notes = nullptr);
-/// Does the file start as a model file does? False for a missing or short file.
+/// Does the file start as a model file does, or is it the folder of a tiled model? False for a missing or short file.
 bool is_model_file(const std::string& path);
 
 }  // namespace retalho

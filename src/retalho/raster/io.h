@@ -7,12 +7,15 @@
 
 #include "retalho/core/context.h"
 #include "retalho/raster/raster.h"
+#include "retalho/raster/window.h"
 
 namespace retalho {
 
 struct ReadOptions {
   int band = 1;                       ///< 1-based
   std::optional<double> nodata = {};  ///< heights equal to this are void too, besides the file's own no-data
+  /// Only these cells, counted north and west first; scales are still those of the whole grid. Not of ASCII PGM.
+  std::optional<CellWindow> window = {};
 };
 
 /// What was read and how, for the line that the program prints and for `info`.
@@ -35,6 +38,10 @@ struct ReadNotes {
 /// complex data, no such band, absurd size).
 Raster read_raster(const std::string& path, const ReadOptions& options = {}, ReadNotes* notes = nullptr,
                    const Context& context = {});
+
+/// Where the grid lies and how many cells it has; no heights are read. Throws as read_raster, and BadInput for ASCII
+/// PGM, of which no part can be read.
+Raster inspect_raster(const std::string& path, const ReadOptions& options = {});
 
 /// One line for the user: size, cell size and units, CRS, valid cells, range.
 /// "344 x 403 cells of 76.2 x 92.5 metre, EPSG:4326 WGS 84, 138632 valid (100 %), heights 231 to 1077"

@@ -76,6 +76,13 @@ Raster read_ascii_pgm(const std::string& path, const ReadOptions& options, ReadN
   return raster;
 }
 
+[[noreturn]] void refuse_part_of_pgm(const std::string& path) {
+  throw BadInput(fmt::format("'{}': no part of an ASCII PGM can be read by itself: make a GeoTIFF of it first "
+                             "(retalho fit and retalho sample, or another converter)",
+                             path),
+                 path);
+}
+
 DatasetPtr open(const std::string& path, const std::string& name, const GdalMessages& messages) {
   std::error_code ec;
   if (path.empty()) throw CannotRead("no file name was given");
@@ -188,39 +195,43 @@ VoidRule void_rule(GDALRasterBand& band, const ReadOptions& options, ReadNotes& 
   return rule;
 }
 
-/// Calls `body(first row, rows)` for the bands of rows in which the file is stored, each small enough for a buffer.
+/// Calls `body(first row, rows)`, counted in the window, for the bands of rows in which the file is stored, each small
+/// enough for a buffer.
 template <class Body>
-void by_block_rows(GDALRasterBand& band, std::size_t bytes_a_cell, const Context& context, const Body& body) {
+void by_block_rows(GDALRasterBand& band, const CellWindow& window, std::size_t bytes_a_cell, const Context& context,
+                   const Body& body) {
   constexpr std::size_t kBuffer = std::size_t{4} << 20;
   int block_width = 0, block_height = 1;
   band.GetBlockSize(&block_width, &block_height);
-  const int columns = band.GetXSize(), rows = band.GetYSize();
-  const std::size_t fit = std::max<std::size_t>(1, kBuffer / (static_cast<std::size_t>(columns) * bytes_a_cell));
-  int step = static_cast<int>(std::min<std::size_t>(fit, static_cast<std::size_t>(rows)));
+  const std::size_t fit = std::max<std::size_t>(1, kBuffer / (static_cast<std::size_t>(window.columns) * bytes_a_cell));
+  int step = static_cast<int>(std::min<std::size_t>(fit, static_cast<std::size_t>(window.rows)));
   if (step > block_height) step -= step % block_height;
-  for (int row = 0, count = 0; row < rows; row += count) {
+  for (int row = 0, count = 0; row < window.rows; row += count) {
     context.check();
-    count = std::min(step, rows - row);
-    if (step < block_height) count = std::min(count, block_height - row % block_height);
+    const int in_block = (window.row + row) % block_height;  // the first band may start inside of a block
+    count = std::min(step, window.rows - row);
+    if (in_block != 0 || step < block_height) count = std::min(count, block_height - in_block);
     body(row, count);
-    context.report("read", static_cast<double>(row + count) / rows);
+    context.report("read", static_cast<double>(row + count) / window.rows);
     // Blocks that were read are not needed again; without this GDAL's cache may hold a second copy of the grid.
-    if ((row + count) % block_height == 0) band.FlushCache(false);
+    if ((window.row + row + count) % block_height == 0) band.FlushCache(false);
   }
 }
 
 class BandReader {
  public:
-  BandReader(GDALRasterBand& band, const std::string& name, const GdalMessages& messages, const VoidRule& rule,
-             ReadNotes& notes, const Context& context)
+  /// `window`: in the file's own order of rows and columns.
+  BandReader(GDALRasterBand& band, const CellWindow& window, const std::string& name, const GdalMessages& messages,
+             const VoidRule& rule, ReadNotes& notes, const Context& context)
       : band_(band),
+        window_(window),
         name_(name),
         messages_(messages),
         rule_(rule),
         notes_(notes),
         context_(context),
-        columns_(static_cast<std::size_t>(band.GetXSize())),
-        cells_(columns_ * static_cast<std::size_t>(band.GetYSize())) {
+        columns_(static_cast<std::size_t>(window.columns)),
+        cells_(columns_ * static_cast<std::size_t>(window.rows)) {
     const int flags = band.GetMaskFlags();
     if ((flags & (GMF_PER_DATASET | GMF_ALPHA)) != 0 && (flags & GMF_ALL_VALID) == 0) mask_ = band.GetMaskBand();
   }
@@ -246,11 +257,13 @@ class BandReader {
  private:
   void fetch(GDALRasterBand& from, int row, int rows, void* to, GDALDataType type) const {
     const int columns = static_cast<int>(columns_);
-    const CPLErr outcome = from.RasterIO(GF_Read, 0, row, columns, rows, to, columns, rows, type, 0, 0, nullptr);
+    const CPLErr outcome = from.RasterIO(GF_Read, window_.column, window_.row + row, columns, rows, to, columns, rows,
+                                         type, 0, 0, nullptr);
     if (outcome == CE_None && !messages_.failed()) return;
-    throw CannotRead(fmt::format("'{}' is damaged or cut off: {} (rows {} to {})", name_,
-                                 messages_.words("GDAL cannot read it"), row, row + rows - 1),
-                     name_, fmt::format("rows {} to {}", row, row + rows - 1));
+    throw CannotRead(
+        fmt::format("'{}' is damaged or cut off: {} (rows {} to {})", name_, messages_.words("GDAL cannot read it"),
+                    window_.row + row, window_.row + row + rows - 1),
+        name_, fmt::format("rows {} to {}", window_.row + row, window_.row + row + rows - 1));
   }
 
   void fetch_mask(int row, int rows) {
@@ -272,7 +285,7 @@ class BandReader {
                 second = rule_.height ? as_float(*rule_.height) : kVoid;
     std::vector<float> heights;
     heights.reserve(cells_);  // address space; pages are taken as rows arrive, so a false claim costs nothing
-    by_block_rows(band_, sizeof(float), context_, [&](int row, int rows) {
+    by_block_rows(band_, window_, sizeof(float), context_, [&](int row, int rows) {
       heights.resize(static_cast<std::size_t>(row + rows) * columns_);
       float* const start = heights.data() + static_cast<std::size_t>(row) * columns_;
       fetch(band_, row, rows, start, GDT_Float32);
@@ -301,7 +314,7 @@ class BandReader {
     HeightSink sink(cells_);
     std::vector<Stored> buffer;
     std::size_t rounded = 0;
-    by_block_rows(band_, sizeof(Stored), context_, [&](int row, int rows) {
+    by_block_rows(band_, window_, sizeof(Stored), context_, [&](int row, int rows) {
       buffer.resize(columns_ * static_cast<std::size_t>(rows));
       fetch(band_, row, rows, buffer.data(), type);
       fetch_mask(row, rows);
@@ -324,6 +337,7 @@ class BandReader {
   }
 
   GDALRasterBand& band_;
+  CellWindow window_;
   const std::string& name_;
   const GdalMessages& messages_;
   const VoidRule& rule_;
@@ -357,7 +371,28 @@ void reorder(Raster& raster, const Placement& placement) {
       raster.heights);
 }
 
-Raster read_gdal(const std::string& path, const ReadOptions& options, ReadNotes& notes, const Context& context) {
+/// The window as the file orders its cells. Throws UsageError where it leaves the grid.
+CellWindow in_file(const CellWindow& window, const Raster& whole, const Placement& placement) {
+  if (window.column < 0 || window.row < 0 || window.columns < 1 || window.rows < 1 ||
+      window.columns > whole.columns - window.column || window.rows > whole.rows - window.row)
+    throw UsageError(fmt::format("the window of {} x {} cells at {}, {} leaves the grid of {} x {}", window.columns,
+                                 window.rows, window.column, window.row, whole.columns, whole.rows));
+  CellWindow file = window;
+  if (placement.flip_columns) file.column = whole.columns - window.column - window.columns;
+  if (placement.flip_rows) file.row = whole.rows - window.row - window.rows;
+  return file;
+}
+
+/// Moves the grid's place to that of its window.
+void move_to(const CellWindow& window, Raster& raster) {
+  raster.georef.origin_x += window.column * (raster.cell_width / raster.georef.scale_x);
+  raster.georef.origin_y -= window.row * (raster.cell_height / raster.georef.scale_y);
+  raster.columns = window.columns;
+  raster.rows = window.rows;
+}
+
+Raster read_gdal(const std::string& path, const ReadOptions& options, bool heights, ReadNotes& notes,
+                 const Context& context) {
   const GdalMessages messages;
   const std::string name = name_for_message(path);
   const DatasetPtr dataset = open(path, name, messages);
@@ -378,12 +413,16 @@ Raster read_gdal(const std::string& path, const ReadOptions& options, ReadNotes&
   raster.rows = band.GetYSize();
   raster.height_unit = band.GetUnitType();
   read_scale(band, name, notes);
+  const Placement placement = place(*dataset, name, raster, notes);
+  if (!heights) return raster;
+  const CellWindow window = options.window.value_or(CellWindow{0, 0, raster.columns, raster.rows});
+  const CellWindow file = in_file(window, raster, placement);
   const bool wide = GDALGetDataTypeSizeBytes(type) > 4 || type == GDT_Int32 || type == GDT_UInt32 || notes.scale != 1 ||
                     notes.offset != 0;
-  check_claim(raster.columns, raster.rows, wide ? sizeof(float) + sizeof(double) : sizeof(float), name);
-  const Placement placement = place(*dataset, name, raster, notes);
+  check_claim(window.columns, window.rows, wide ? sizeof(float) + sizeof(double) : sizeof(float), name);
+  if (options.window) move_to(window, raster);
   const VoidRule rule = void_rule(band, options, notes);
-  raster.heights = BandReader(band, name, messages, rule, notes, context).read();
+  raster.heights = BandReader(band, file, name, messages, rule, notes, context).read();
   reorder(raster, placement);
   for (const std::string& warning : messages.warnings()) notes.remarks.push_back("GDAL: " + warning);
   if (notes.infinite > 0) notes.remarks.push_back(fmt::format("{} infinite heights are taken as void", notes.infinite));
@@ -398,10 +437,19 @@ Raster read_raster(const std::string& path, const ReadOptions& options, ReadNote
   ReadNotes& into = notes ? *notes : own;
   into = {};
   try {
-    return is_ascii_pgm(path) ? read_ascii_pgm(path, options, into, context) : read_gdal(path, options, into, context);
+    if (!is_ascii_pgm(path)) return read_gdal(path, options, true, into, context);
+    if (options.window) refuse_part_of_pgm(path);
+    return read_ascii_pgm(path, options, into, context);
   } catch (const std::bad_alloc&) {
     throw BadInput(fmt::format("'{}' does not fit into memory", name_for_message(path)), name_for_message(path));
   }
+}
+
+Raster inspect_raster(const std::string& path, const ReadOptions& options) {
+  register_gdal();
+  if (is_ascii_pgm(path)) refuse_part_of_pgm(path);
+  ReadNotes notes;
+  return read_gdal(path, options, false, notes, {});
 }
 
 }  // namespace retalho

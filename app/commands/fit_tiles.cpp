@@ -1,0 +1,75 @@
+#include "fit_tiles.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "retalho/core/error.h"
+#include "retalho/tiles/make.h"
+#include "table.h"
+
+namespace retalho::app {
+namespace {
+
+TileOptions options_of(const TileFlags& flags, const BudgetFlags& budget, const SurfaceFlags& surface) {
+  if (!budget.max_error || budget.vertices || !budget.ratio.empty())
+    throw UsageError(
+        "--tiles takes --max-error E and no budget: only then do the vertices on a seam depend on the seam alone", {},
+        "--tiles");
+  if (resolve_fit(surface, false) != FitKind::interpolate || refines_surface(surface, false))
+    throw UsageError("--tiles takes --fit interpolate and --refine flat", {}, "--tiles");
+  const SurfaceOptions resolved = resolve(surface, false);
+  if (resolved.gradients != GradientKind::normals || resolved.cross_derivative != CrossDerivative::perpendicular)
+    throw UsageError("--tiles takes --gradients normals and --cross-derivative perpendicular", {}, "--tiles");
+  return {*flags.size, *budget.max_error, resolved.surface};
+}
+
+}  // namespace
+
+void add_tile_flags(CLI::App& command, TileFlags& flags) {
+  command
+      .add_option("--tiles", flags.size,
+                  "Grids that do not fit into memory: a folder of tiles of N x N cells; run again, it goes on")
+      ->type_name("N");
+  command.add_option("--jobs", flags.jobs, "With --tiles: how many tiles at a time (default: --threads)")
+      ->type_name("N");
+}
+
+void fit_tiles(const Program& program, const TileFlags& flags, const std::string& input, const std::string& output,
+               const GridFlags& grid, const BudgetFlags& budget, const SurfaceFlags& surface) {
+  namespace fs = std::filesystem;
+  const Stopwatch watch;
+  const TileOptions options = options_of(flags, budget, surface);
+  if (fs::exists(output) && !fs::is_directory(output))
+    throw CannotWrite(fmt::format("'{}' is a file: with --tiles the output is a folder", output), output);
+  const Context context = program.context();
+  const TilePlan plan = plan_tiles(input, options, {.band = grid.band, .nodata = grid.nodata});
+  program.say(fmt::format("{}: {} x {} cells in {} x {} tiles", input, plan.frame.columns, plan.frame.rows,
+                          plan.frame.tile_columns(), plan.frame.tile_rows()));
+  const TiledIndex index = make_tiles(plan, output, flags.jobs, program.overwrite, context);
+  std::size_t vertices = 0, triangles = 0, bytes = 0, empty = 0;
+  for (const TileEntry& tile : index.tiles) {
+    vertices += tile.vertices;
+    triangles += tile.triangles;
+    bytes += tile.bytes;
+    empty += tile.file.empty() ? 1 : 0;
+  }
+  const nlohmann::ordered_json json = {{"surface", surface_name(index.surface)},
+                                       {"max_error", index.max_error},
+                                       {"tiles", index.tiles.size()},
+                                       {"empty_tiles", empty},
+                                       {"vertices_of_tiles", vertices},
+                                       {"triangles", triangles},
+                                       {"bytes", bytes},
+                                       {"cells", static_cast<std::size_t>(index.columns) * index.rows},
+                                       {"seconds", watch.seconds()}};
+  if (program.json) return program.print(json);
+  program.print(list_text({{"surface", surface_name(index.surface)},
+                           {"tiles", fmt::format("{} ({} without data)", index.tiles.size(), empty)},
+                           {"vertices", fmt::format("{} (those on seams counted in each tile)", vertices)},
+                           {"triangles", fmt::format("{}", triangles)},
+                           {"bytes", fmt::format("{}", bytes)},
+                           {"seconds", fmt::format("{:.2f}", watch.seconds())}}));
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,98 @@
+#include "retalho/tiles/plan.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "retalho/core/error.h"
+
+namespace retalho {
+namespace {
+
+constexpr int kLeastSize = 16, kMostSize = 16384;
+constexpr int kNaming = 1;  // to be raised when the same input would give other tiles
+
+/// Are there three valid cells that are not on one line?
+bool has_area(const Raster& raster) {
+  bool first = false, second = false;
+  std::int64_t c0 = 0, r0 = 0, dc = 0, dr = 0;
+  for (int r = 0; r < raster.rows; ++r)
+    for (int c = 0; c < raster.columns; ++c) {
+      if (!raster.valid(c, r)) continue;
+      if (!first) {
+        first = true;
+        c0 = c;
+        r0 = r;
+      } else if (!second) {
+        second = true;
+        dc = c - c0;
+        dr = r - r0;
+      } else if (dc * (r - r0) != dr * (c - c0)) {
+        return true;
+      }
+    }
+  return false;
+}
+
+std::string parameters(const TilePlan& plan, int tile_row, int tile_column) {
+  const TiledIndex& f = plan.frame;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}|", kNaming, tile_row, tile_column, f.columns, f.rows,
+                     f.tile_size, f.max_error, f.cell_width, f.cell_height, f.georef.origin_x, f.georef.origin_y,
+                     f.georef.scale_x, f.georef.scale_y, f.georef.crs_wkt);
+}
+
+}  // namespace
+
+TilePlan plan_tiles(const std::string& source, const TileOptions& options, const ReadOptions& read) {
+  if (options.size < kLeastSize || options.size > kMostSize)
+    throw UsageError(fmt::format("tiles have {} to {} cells a side, not {}", kLeastSize, kMostSize, options.size), {},
+                     "--tiles");
+  if (!std::isfinite(options.max_error) || options.max_error < 0)
+    throw UsageError(fmt::format("max_error must be 0 or more, not {}", options.max_error), {}, "--max-error");
+  if (options.surface == SurfaceKind::powell_sabin)
+    throw UsageError(
+        "tiles take linear or clough-tocher surfaces: the pieces of a powell-sabin one at a seam depend on both sides",
+        {}, "--surface");
+  TilePlan plan{source, read, {}};
+  const Raster place = inspect_raster(source, read);
+  if (place.columns < 2 || place.rows < 2)
+    throw BadInput(fmt::format("a grid of {} x {} cells has no area", place.columns, place.rows), source);
+  plan.frame.columns = place.columns;
+  plan.frame.rows = place.rows;
+  plan.frame.cell_width = place.cell_width;
+  plan.frame.cell_height = place.cell_height;
+  plan.frame.georef = place.georef;
+  plan.frame.tile_size = options.size;
+  plan.frame.surface = options.surface;
+  plan.frame.max_error = options.max_error;
+  return plan;
+}
+
+Raster read_tile(const TilePlan& plan, int tile_row, int tile_column, const Context& context) {
+  const CellWindow w = plan.frame.window(tile_row, tile_column);
+  ReadOptions read = plan.read;
+  read.window = w;
+  return read_raster(plan.source, read, nullptr, context);
+}
+
+std::string tin_name(const TilePlan& plan, int tile_row, int tile_column, const Context& context) {
+  const Raster raster = read_tile(plan, tile_row, tile_column, context);
+  if (!has_area(raster)) return {};
+  std::string key = parameters(plan, tile_row, tile_column);
+  std::visit(
+      [&](const auto& heights) {
+        key += fmt::format("{}|", sizeof heights[0]);
+        key += content_digest({reinterpret_cast<const char*>(heights.data()), heights.size() * sizeof heights[0]});
+      },
+      raster.heights);
+  return fmt::format("tin-{}-{}-{}.retalho", tile_row, tile_column, content_digest(key));
+}
+
+std::string tile_name(const TilePlan& plan, int tile_row, int tile_column, const NeighborNames& tins) {
+  std::string key = parameters(plan, tile_row, tile_column) + surface_name(plan.frame.surface);
+  for (const std::string& tin : tins) key += "|" + tin;
+  return fmt::format("tile-{}-{}-{}.retalho", tile_row, tile_column, content_digest(key));
+}
+
+}  // namespace retalho
