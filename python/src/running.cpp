@@ -48,7 +48,7 @@ void run_without_lock(const Running& running, const std::function<void(const Con
   Shared shared;
   Context context{running.threads, &shared.cancel, {}};
   if (reports) context.progress = [&](std::string_view stage, double fraction) { keep_event(shared, stage, fraction); };
-  std::optional<py::error_already_set> raised;  // by the callable, or a signal
+  std::exception_ptr raised;  // by the callable, or a signal
   {
     const py::gil_scoped_release released;
     std::thread worker([&] {
@@ -75,14 +75,14 @@ void run_without_lock(const Running& running, const std::function<void(const Con
       try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         for (const auto& [stage, fraction] : events) running.progress(stage, fraction);
-      } catch (py::error_already_set& error) {
-        raised.emplace(std::move(error));
+      } catch (const py::error_already_set&) {
+        raised = std::current_exception();
         shared.cancel.store(true, std::memory_order_relaxed);
       }
     }
     worker.join();
   }
-  if (raised) throw std::move(*raised);
+  if (raised) std::rethrow_exception(raised);
   if (shared.failure) std::rethrow_exception(shared.failure);
 }
 

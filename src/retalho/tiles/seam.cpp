@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <compare>
 #include <cstdint>
 #include <unordered_map>
 
@@ -15,7 +14,8 @@ namespace {
 /// A cell of the whole grid.
 struct Cell {
   std::int64_t row = 0, column = 0;
-  friend auto operator<=>(const Cell&, const Cell&) = default;
+  friend bool operator==(const Cell&, const Cell&) = default;
+  friend bool operator<(const Cell& a, const Cell& b) { return a.row != b.row ? a.row < b.row : a.column < b.column; }
   std::uint64_t key() const { return (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column); }
 };
 
