@@ -1,9 +1,11 @@
 """`pip install .` from a checkout: CMake builds the extension module into the package; nothing is downloaded.
 
-Offline: `/usr/bin/python3 -m pip install --no-build-isolation --no-deps .` (setuptools and pybind11 are Debian's).
+Offline: `/usr/bin/python3 -m pip install --no-build-isolation --no-deps .` (setuptools and pybind11 are Debian's; Debian's pip
+wants --break-system-packages as well, or a virtual environment). $CMAKE_ARGS is passed on.
 """
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -26,7 +28,8 @@ class CMakeBuild(build_ext):
         subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
              "-DRETALHO_PYTHON=ON", "-DRETALHO_APP=OFF", "-DRETALHO_TESTS=OFF", "-DRETALHO_BENCH=OFF",
-             f"-DPython_EXECUTABLE={sys.executable}", f"-DRETALHO_PYTHON_FOLDER={package}"], check=True)
+             f"-DPython_EXECUTABLE={sys.executable}", f"-DRETALHO_PYTHON_FOLDER={package}",
+             *shlex.split(os.environ.get("CMAKE_ARGS", ""))], check=True)
         subprocess.run(["cmake", "--build", str(build), "--target", "retalho_python", "--parallel", jobs], check=True)
         target.parent.mkdir(parents=True, exist_ok=True)
         built = next(package.glob("_retalho*.so"))

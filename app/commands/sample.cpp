@@ -28,6 +28,7 @@ struct Options {
   double resolution = 0;
   std::vector<std::string> what;
   std::vector<std::string> at;
+  bool cog = false;
   bool set(What w) const { return std::find(what.begin(), what.end(), kWhat[w]) != what.end(); }
 };
 
@@ -129,7 +130,9 @@ void sample_raster(const Program& program, const Options& options) {
   if (what == normal)
     throw UsageError("a normal has three numbers and a raster one: --what normal works with --at and --points", {},
                      "--what");
-  check_output(program, options.output, {}, {options.model, options.like});
+  check_output(program, options.output,
+               options.cog ? std::vector<std::string>{".tif", ".tiff"} : std::vector<std::string>{},
+               {options.model, options.like});
   const Context context = program.context();
   const Terrain terrain = load_terrain(options.model);
   Target target = options.like.empty() ? target_of_model(program, options, terrain)
@@ -143,7 +146,8 @@ void sample_raster(const Program& program, const Options& options) {
   target.raster.heights = std::vector<float>(values.begin(), values.end());
   if (what != height) target.raster.height_unit.clear();
   context.check();
-  write_raster(target.raster, options.output, {.overwrite = program.overwrite}, context);
+  write_raster(target.raster, options.output, {.driver = options.cog ? "COG" : "", .overwrite = program.overwrite},
+               context);
   const nlohmann::ordered_json json = {{"what", kWhat[what]},
                                        {"columns", target.raster.columns},
                                        {"rows", target.raster.rows},
@@ -240,8 +244,8 @@ void run(const Program& program, const Options& options) {
   const bool points = !options.at.empty() || !options.points_file.empty();
   if (points == !options.output.empty())
     throw UsageError("give either -o FILE for a raster, or --at X,Y (or --points FILE) for values at points");
-  if (points && (!options.like.empty() || options.resolution != 0))
-    throw UsageError("--like and --resolution are for rasters (-o FILE), not for points");
+  if (points && (!options.like.empty() || options.resolution != 0 || options.cog))
+    throw UsageError("--like, --resolution and --cog are for rasters (-o FILE), not for points");
   if (!options.like.empty() && options.resolution != 0) throw UsageError("give --like or --resolution, not both");
   if (!std::isfinite(options.resolution) || options.resolution < 0)
     throw UsageError("--resolution must be above 0", {}, "--resolution");
@@ -272,6 +276,7 @@ void add_sample(CLI::App& root, Program& program) {
       ->add_option("--what", options->what,
                    "height (default); slope, aspect: degrees; normal; curvature: mean, 1 / unit. Repeat it for points")
       ->type_name("KIND");
+  command->add_flag("--cog", options->cog, "The raster as a Cloud-Optimised GeoTIFF (.tif), with overviews");
   command->add_option("--at", options->at, "Places in CRS coordinates")->type_name("X,Y");
   command
       ->add_option("--points", options->points_file,

@@ -1,0 +1,96 @@
+// retalho fit --tiles, and the commands that take its folder.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "cli/program.h"
+#include "retalho/raster/io.h"
+
+namespace retalho::test {
+namespace {
+
+struct Tiles : ScratchFolder {
+  Tiles() { put("dem.asc", ascii_grid(90, 70, hills)); }
+};
+
+TEST(FitTiles, EveryCommandTakesTheFolder) {
+  const Tiles folder;
+  const Outcome made = run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 --surface linear --jobs 2 --json");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(made.json()["tiles"], 9);
+  EXPECT_EQ(made.json()["empty_tiles"], 0);
+  EXPECT_EQ(made.json()["cells"], 6300);
+  const Outcome compared = run(folder, "compare dem.asc m --json");
+  ASSERT_EQ(compared.code, 0) << compared.err;
+  const auto model = compared.json()["models"][0];
+  EXPECT_LE(model["max_error"].get<double>(), 3.0);
+  EXPECT_EQ(model["violations"], 0);
+  EXPECT_EQ(model["uncovered"], 0);
+  EXPECT_EQ(model["bytes"], made.json()["bytes"]);
+  EXPECT_EQ(model["triangles"], made.json()["triangles"]);
+  for (const char* command :
+       {"info m", "sample m -o s.tif", "sample m --at 1500,2300", "contour m -o c.geojson --interval 20",
+        "mesh m -o m.ply", "viewshed m -o v.tif --observer 1505,2305", "render m -o m.png"})
+    EXPECT_EQ(run(folder, command).code, 0) << command;
+  const Raster sampled = read_raster(folder / "s.tif"), dem = read_raster(folder / "dem.asc");
+  for (std::size_t i = 0; i < dem.cells(); ++i) ASSERT_NEAR(sampled.at(i), dem.at(i), 3.001);
+}
+
+TEST(Sample, CloudOptimisedGeoTiff) {
+  const Tiles folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 -q").code, 0);
+  ASSERT_EQ(run(folder, "sample m -o plain.tif --resolution 1").code, 0);
+  ASSERT_EQ(run(folder, "sample m -o cloud.tif --resolution 1 --cog").code, 0);
+  const std::string command = fmt::format("gdalinfo '{}' >'{}'", folder / "cloud.tif", folder / "info");
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::string info = slurp(folder / "info");
+  EXPECT_NE(info.find("LAYOUT=COG"), std::string::npos) << info;
+  EXPECT_NE(info.find("Overviews:"), std::string::npos) << info;
+  const Raster plain = read_raster(folder / "plain.tif"), cloud = read_raster(folder / "cloud.tif");
+  ASSERT_EQ(plain.cells(), cloud.cells());
+  std::size_t valid = 0;
+  for (std::size_t i = 0; i < plain.cells(); ++i) {
+    const double a = plain.at(i), b = cloud.at(i);
+    ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << i;
+    valid += std::isnan(a) ? 0 : 1;
+  }
+  EXPECT_GT(valid, 500000U);
+  EXPECT_EQ(run(folder, "sample m -o cloud.asc --resolution 1 --cog").code, 2);
+  EXPECT_EQ(run(folder, "sample m --at 1500,2300 --cog").code, 2);
+}
+
+TEST(FitTiles, RunAgainItHasNothingToDo) {
+  const Tiles folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 -q").code, 0);
+  const std::string index = slurp(folder / "m/index.json");
+  EXPECT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 -q").code, 0);
+  EXPECT_EQ(slurp(folder / "m/index.json"), index);
+  const Outcome other = run(folder, "fit dem.asc -o m --tiles 32 --max-error 2 -q");
+  EXPECT_EQ(other.code, 5);
+  EXPECT_NE(other.err.find("--overwrite"), std::string::npos) << other.err;
+  EXPECT_EQ(slurp(folder / "m/index.json"), index);
+  EXPECT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 2 -q --overwrite").code, 0);
+  EXPECT_NE(slurp(folder / "m/index.json"), index);
+}
+
+TEST(FitTiles, WhatIsRefused) {
+  const Tiles folder;
+  folder.put("points.xyz", "0 0 1\n1 0 2\n0 1 3\n");
+  folder.put("file", "x");
+  folder.put("grid.pgm", "P2\n3 3\n9\n1 2 3 4 5 6 7 8 9\n");
+  for (const char* options :
+       {"--tiles 32", "--tiles 32 --vertices 100", "--tiles 32 --max-error 1 --ratio 1%", "--tiles 3 --max-error 1",
+        "--tiles 32 --max-error 1 --surface powell-sabin", "--tiles 32 --max-error 1 --gradients network",
+        "--tiles 32 --max-error 1 --fit least-squares", "--tiles 32 --max-error 1 --refine surface",
+        "--jobs 2 --max-error 1", "--tiles 32 --max-error 1 --jobs -1"})
+    EXPECT_EQ(run(folder, std::string("fit dem.asc -o m ") + options).code, 2) << options;
+  EXPECT_EQ(run(folder, "fit points.xyz -o m --tiles 32 --max-error 1").code, 2);
+  EXPECT_EQ(run(folder, "fit grid.pgm -o m --tiles 32 --max-error 1").code, 3);
+  EXPECT_EQ(run(folder, "fit none.tif -o m --tiles 32 --max-error 1").code, 4);
+  EXPECT_EQ(run(folder, "fit dem.asc -o file --tiles 32 --max-error 1").code, 5);
+  EXPECT_FALSE(std::filesystem::exists(folder / "m/index.json"));
+}
+
+}  // namespace
+}  // namespace retalho::test
