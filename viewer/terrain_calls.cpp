@@ -10,6 +10,7 @@
 #include "retalho/core/error.h"
 #include "retalho/level/contour.h"
 #include "retalho/mesh/terrain_mesh.h"
+#include "retalho/model/model.h"
 #include "retalho/terrain/quantities.h"
 #include "retalho/visibility/viewshed.h"
 
@@ -328,6 +329,12 @@ Answer profile_call(const Models& models, const Json& input) {
           {make_array("distance", distance), make_array("surface", surface), make_array("grid", grid)}};
 }
 
+/// The model file's bytes, as `retalho fit` writes them.
+Answer model_call(const Models& models, const Json& input) {
+  const std::string bytes = encode_model(*models.get(input)->terrain);
+  return {{{"bytes", bytes.size()}}, {make_array("file", std::vector<std::uint8_t>(bytes.begin(), bytes.end()))}};
+}
+
 Answer viewshed_call(Models& models, const Json& input, const Context& context) {
   const ModelPointer model = models.get(input);
   const std::shared_ptr<const Raster> grid = models.grid_of(*model, context);
@@ -378,6 +385,8 @@ void add_terrain_calls(CallTable& table, const InputFiles& inputs) {
   table["/api/terrain/at"] = {Kind::quick, [models](const Json& in, const Context&) { return at_call(*models, in); }};
   table["/api/terrain/profile"] = {Kind::quick,
                                    [models](const Json& in, const Context&) { return profile_call(*models, in); }};
+  table["/api/terrain/model"] = {Kind::quick,
+                                 [models](const Json& in, const Context&) { return model_call(*models, in); }};
   table["/api/terrain/viewshed"] = {
       Kind::slow, [models](const Json& in, const Context& context) { return viewshed_call(*models, in, context); }};
 }

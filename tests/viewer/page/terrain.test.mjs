@@ -39,7 +39,7 @@ async function tool(view, name) {
 }
 
 export const tests = [
-  ['the surface, its report and its errors are the program’s', () => withGrid(async ({view, page, report}) => {
+  ['the surface, its report and its errors are the program’s', () => withGrid(async ({view, page, report, model, folder}) => {
     await page.getByLabel('Tolerance', {exact: true}).first().waitFor();
     await page.locator('input[type=number][aria-label="Tolerance"]').fill('5');
     await page.keyboard.press('Enter');
@@ -51,6 +51,11 @@ export const tests = [
     near(shown['largest error'], report.max_error, 1e-3, 'largest error');
     near(shown['slope RMSE'], report.slope_rmse, 5e-3, 'slope RMSE');
     await view.picture('terrain-relief');
+    const saving = page.waitForEvent('download');
+    await page.getByRole('button', {name: 'Save model'}).click();
+    const file = join(folder, 'saved.retalho');
+    await (await saving).saveAs(file);
+    assert.deepEqual(readFileSync(file), readFileSync(model), 'the saved model is the program’s, byte for byte');
     await page.locator('.controls:not([hidden])').getByLabel('Colour').selectOption('error');
     await view.quiet();
     const top = await page.$eval('.legend .ticks span:last-child', (span) => parseFloat(span.textContent));

@@ -1,6 +1,6 @@
 // The terrain view: asks the program for what the state says and puts the answers into the picture.
 import {ask, work, type Answer} from '../api';
-import {make, say, table} from '../dom';
+import {download, make, say, table} from '../dom';
 import type {Tasks} from '../tasks';
 import {TerrainControls, type Edit} from './controls';
 import {Panel} from './panel';
@@ -21,7 +21,7 @@ export class TerrainView {
   constructor(readonly files: FileInfo[], first: TerrainState, private edit: Edit, private tasks: Tasks, openFile: (file: number) => void, cameraMoved: (camera: number[]) => void) {
     this.state = first;
     this.scene = new TerrainScene(cameraMoved);
-    this.controls = new TerrainControls(files, edit, openFile, (x, y) => void this.askAt(x, y));
+    this.controls = new TerrainControls(files, edit, openFile, () => void this.saveModel(), (x, y) => void this.askAt(x, y));
     this.stage.append(this.scene.element, this.chart);
     this.scene.canvas.addEventListener('click', (event) => this.clicked(event));
     this.scene.canvas.addEventListener('keydown', (event) => {
@@ -156,6 +156,13 @@ export class TerrainView {
     if (info.kind === 'grid') lines.push({name: 'grid', distance: answers[0].arrays.distance as Float64Array, height: answers[0].arrays.grid as Float64Array});
     this.chart.replaceChildren(profileChart(lines, info.unit));
     this.scene.redraw();
+  }
+
+  private async saveModel(): Promise<void> {
+    const [model] = this.models();
+    if (!model) return;
+    const {arrays} = await ask('/api/terrain/model', {model});
+    download(`${this.files[this.state.file].name.replace(/\.[^.]*$/, '')}.retalho`, new Blob([arrays.file]));
   }
 
   /** A place by its coordinates in the CRS. */

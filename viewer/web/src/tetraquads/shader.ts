@@ -79,9 +79,12 @@ void main() {
   // The ray from the fragment backwards to the eye: distances stay small, and floats keep their digits.
   vec3 d = normalize(at - eye);
   float reach = distance(at, eye);
-  float from = -reach, to = 0.0;
+  float from = -reach, to = 1e9;
+  // Pixels are snapped to a fraction of themselves before they are drawn: a ray that runs along a face could miss the
+  // tetrahedra on both sides. Each looks a little beyond its faces; there the neighbour's cubic differs by less still.
+  const float beyond = 4e-4;
   for (int i = 0; i < 4; ++i) {
-    float b = b0[i] + dot(gradB[i], at - base), slope = dot(gradB[i], d);
+    float b = b0[i] + dot(gradB[i], at - base) + beyond, slope = dot(gradB[i], d);
     if (slope > 1e-12) from = max(from, -b / slope);
     else if (slope < -1e-12) to = min(to, -b / slope);
   }
