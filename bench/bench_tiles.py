@@ -36,7 +36,6 @@ class Bench:
         for _ in range(runs):
             out = self.folder / "out"
             shutil.rmtree(out, ignore_errors=True)
-            out.unlink(missing_ok=True) if out.is_file() else None
             start = time.monotonic()
             done = subprocess.run(["/usr/bin/time", "-f", "%M", *map(str, command)], capture_output=True, text=True,
                                   env=self.environment)

@@ -17,7 +17,7 @@ namespace retalho {
 /// and `overwrite` is false.
 void check_tiles_folder(const TilePlan& plan, const std::string& folder, bool overwrite);
 
-/// Makes the triangulation `name` (tin_name) in `folder`. Memory: about 20 bytes a cell of the tile.
+/// Makes the triangulation `name` (tin_name) in `folder`. Memory: refine_grid's, for the tile.
 void make_tin(const TilePlan& plan, int tile_row, int tile_column, const std::string& name, const std::string& folder,
               const Context& context = {});
 
