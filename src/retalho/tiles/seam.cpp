@@ -14,7 +14,6 @@ namespace {
 /// A cell of the whole grid.
 struct Cell {
   std::int64_t row = 0, column = 0;
-  friend bool operator==(const Cell&, const Cell&) = default;
   friend bool operator<(const Cell& a, const Cell& b) { return a.row != b.row ? a.row < b.row : a.column < b.column; }
   std::uint64_t key() const { return (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column); }
 };
