@@ -124,7 +124,8 @@ TEST(Viewshed, CompareTellsHowFarTheMapsAreAndDrawsThem) {
   const Outcome kinds =
       run(folder, "compare dem.asc --vertices 6 --visibility 0 --visibility-maps pictures --directions 36 --json");
   ASSERT_EQ(kinds.code, 0) << kinds.err;
-  for (const auto& model : kinds.json()["models"]) {
+  const auto json = kinds.json();  // it must outlive the loop
+  for (const auto& model : json["models"]) {
     EXPECT_LE(model["visibility_rmse"].get<double>(), model["visibility_max"].get<double>());
     EXPECT_GT(model["visibility_max"].get<double>(), 1);  // six vertices do not make a wall
     EXPECT_LE(model["visibility_max"].get<double>(), 1250);
