@@ -149,6 +149,19 @@ bool holds_panels(const std::string& path) {
   return !std::holds_alternative<Terrain>(load_model(path));
 }
 
+/// The panels as one picture, and what is said of it: its size, then `facts`.
+void write_sheet(const Program& program, const Options& options, const Layout& layout, const std::vector<Panel>& panels,
+                 const nlohmann::ordered_json& facts, const Context& context) {
+  const Image sheet = compose(layout, panels);
+  context.check();
+  write_png(sheet, options.output, program.overwrite);
+  nlohmann::ordered_json json = {{"width", sheet.width}, {"height", sheet.height}, {"panels", panels.size()}};
+  for (const auto& [key, value] : facts.items()) json[key] = value;
+  json["bytes"] = std::filesystem::file_size(options.output);
+  if (program.json) return program.print(json);
+  program.say(fmt::format("{}: {} x {} pixels", options.output, sheet.width, sheet.height));
+}
+
 /// Only models in space: TetraQuad surfaces, by ray casting, and patches.
 void run_in_space(const Program& program, const Options& options) {
   const Context context = program.context();
@@ -179,15 +192,7 @@ void run_in_space(const Program& program, const Options& options) {
     if (options.captions) panel.caption = {name, words};
     panels.push_back(std::move(panel));
   }
-  const Image sheet = compose(layout, panels);
-  context.check();
-  write_png(sheet, options.output, program.overwrite);
-  const nlohmann::ordered_json json = {{"width", sheet.width},
-                                       {"height", sheet.height},
-                                       {"panels", panels.size()},
-                                       {"bytes", std::filesystem::file_size(options.output)}};
-  if (program.json) return program.print(json);
-  program.say(fmt::format("{}: {} x {} pixels", options.output, sheet.width, sheet.height));
+  write_sheet(program, options, layout, panels, {}, context);
 }
 
 void run(const Program& program, const Options& options) {
@@ -232,17 +237,8 @@ void run(const Program& program, const Options& options) {
     if (options.captions) panel.caption = shape->caption;
     panels.push_back(std::move(panel));
   }
-  const Image sheet = compose(layout, panels);
-  context.check();
-  write_png(sheet, options.output, program.overwrite);
-  const nlohmann::ordered_json json = {{"width", sheet.width},
-                                       {"height", sheet.height},
-                                       {"panels", panels.size()},
-                                       {"view", options.view},
-                                       {"exaggeration", scene.relief.exaggeration},
-                                       {"bytes", std::filesystem::file_size(options.output)}};
-  if (program.json) return program.print(json);
-  program.say(fmt::format("{}: {} x {} pixels", options.output, sheet.width, sheet.height));
+  write_sheet(program, options, layout, panels, {{"view", options.view}, {"exaggeration", scene.relief.exaggeration}},
+              context);
 }
 
 }  // namespace
