@@ -51,7 +51,7 @@ void move_to_origin(PointCloud& cloud) {
 
 bool is_point_file(const std::string& path) {
   const std::string extension = ending(path);
-  return extension == ".ply" || is_text(extension);
+  return extension == ".ply" || extension == ".las" || extension == ".laz" || is_text(extension);
 }
 
 PointCloud read_points(const std::string& path, const PointOptions& options, PointNotes* notes,
@@ -67,6 +67,12 @@ PointCloud read_points(const std::string& path, const PointOptions& options, Poi
       read_ply_points(path, cloud, into, context);
     } else if (is_text(extension)) {
       read_text_points(path, cloud, into, context);
+    } else if (extension == ".obj") {
+      read_obj_points(path, cloud, into, context);
+    } else if (extension == ".las" || extension == ".laz") {
+      std::string own_crs;
+      read_las_points(path, cloud, into, own_crs, context);
+      if (crs.empty()) crs = own_crs;
     } else {
       std::string own_crs;
       read_vector_points(path, options, cloud, into, own_crs, context);

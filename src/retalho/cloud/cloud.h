@@ -1,11 +1,13 @@
-// Points with optional normals, and the formats that they come in: text (.xyz, .csv, .txt), PLY, and every vector
-// format that GDAL opens.
+// Points with optional normals, and the formats that they come in: text (.xyz, .csv, .txt), PLY, LAS, OBJ, and
+// every vector format that GDAL opens.
 //
 //   .xyz .csv .txt .pts .dat .asc   white space, comma, semicolon or tab between values; '#', '%', '>' and '//' begin
 //                                   a comment; a header line may name the columns (x, y, z, nx, ny, nz and the usual
 //                                   synonyms), else the first three are x, y, z, and columns 4 to 6 are normals where
 //                                   every line has a unit vector there
 //   .ply                            ascii, binary little and big endian; the vertex element's x, y, z, nx, ny, nz
+//   .las                            1.0 to 1.4, uncompressed, with its CRS; points that it withholds are left out
+//   .obj                            "v" lines; normals ("vn") that faces, or an equal number, give to vertices
 //   others                          points, multi-points and the vertices of lines, with their z or a numeric attribute
 #pragma once
 
@@ -49,7 +51,7 @@ struct PointNotes {
 PointCloud read_points(const std::string& path, const PointOptions& options = {}, PointNotes* notes = nullptr,
                        const Context& context = {});
 
-/// Whether `path` has an ending that read_points takes for points by itself (.xyz, .csv, .txt, .pts, .ply): how a
+/// Whether `path` has an ending that read_points takes for points by itself (.xyz, .csv, .txt, .pts, .ply, .las): how a
 /// command that accepts grids and points tells them apart.
 bool is_point_file(const std::string& path);
 
