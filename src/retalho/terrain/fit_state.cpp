@@ -28,7 +28,10 @@ std::vector<greedy::Cell> box_of_valid(const Raster& raster) {
 }  // namespace
 
 FitState::FitState(const Raster& raster, SurfaceKind surface, const Context& context)
-    : kind(surface), grid(raster, context), mesh(box_of_valid(raster)) {
+    : FitState(raster, surface, CellMesh(box_of_valid(raster)), context) {}
+
+FitState::FitState(const Raster& raster, SurfaceKind surface, CellMesh on, const Context& context)
+    : kind(surface), grid(raster, context), mesh(std::move(on)) {
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     const double z = height(mesh.cell(v));
     data.push_back({std::isnan(z) ? 0 : z, 0, 0});

@@ -16,12 +16,15 @@ struct FitState {
   FitGrid grid;
   CellMesh mesh;
   std::vector<Vec3> data;            ///< of each vertex, units of the fit
-  std::vector<std::uint8_t> pinned;  ///< of each vertex: its height is its cell's
+  std::vector<std::uint8_t> pinned;  ///< of each vertex: kHeldHeight: its height is its cell's
   std::vector<FitElement> elements;  ///< of each triangle, up to date after refresh()
   std::vector<float> cell_weights;   ///< empty: 1
   FitWeights weights;
 
+  /// On the corners of the box of the valid cells.
   FitState(const Raster& raster, SurfaceKind kind, const Context& context);
+  /// On a triangulation with the heights of its cells.
+  FitState(const Raster& raster, SurfaceKind kind, CellMesh on, const Context& context);
 
   /// The triangle as it is, or with vertex `moved` at cell coordinates `to`.
   FitTriangle triangle(std::uint32_t t, std::uint32_t moved = kNone, Vec2 to = {}) const;

@@ -96,19 +96,23 @@ template <std::size_t N>
 int solve_blocks(const FitPattern& pattern, const BlockMatrix<N>& matrix, std::vector<double>& x,
                  const FitSolveOptions& options, const Context& context) {
   std::vector<Block<N>> jacobi(pattern.vertices());
-  const auto is_pinned = [&](std::size_t v) { return !options.pinned.empty() && options.pinned[v] != 0; };
+  const auto is_held = [&](std::size_t v, std::size_t i) {
+    return !options.pinned.empty() && (options.pinned[v] & (i == 0 ? kHeldHeight : kHeldGradient)) != 0;
+  };
   for (std::uint32_t v = 0; v < pattern.vertices(); ++v) {
     Block<N> d = matrix.block(pattern.slot(v, v));
-    if (is_pinned(v)) {  // the gradient's own block
-      for (std::size_t i = 1; i < N; ++i) d[i] = d[i * N] = 0;
-      d[0] = 1;
+    for (std::size_t i = 0; i < N; ++i) {  // the block of what is free
+      if (!is_held(v, i)) continue;
+      for (std::size_t j = 0; j < N; ++j) d[i * N + j] = d[j * N + i] = 0;
+      d[i * N + i] = 1;
     }
     jacobi[v] = inverse(d);
   }
   const auto hold = [&](std::vector<double>& y) {
     if (options.pinned.empty()) return;
     for (std::size_t v = 0; v < pattern.vertices(); ++v)
-      if (is_pinned(v)) y[v * N] = 0;
+      for (std::size_t i = 0; i < N; ++i)
+        if (is_held(v, i)) y[v * N + i] = 0;
   };
   const auto precondition = [&](const std::vector<double>& r, std::vector<double>& y) {
     parallel_chunks(pattern.vertices(), kGrain * 4, context, [&](std::size_t begin, std::size_t end) {
@@ -210,7 +214,7 @@ int solve_heights(const FitPattern& pattern, const BlockMatrix<3>& matrix, const
     for (std::size_t v = begin; v < end; ++v) jacobi[v] = mean.diagonal(matrix, static_cast<std::uint32_t>(v));
   });
   for (std::size_t v = 0; v < n; ++v) {
-    const bool free = jacobi[v] > 0 && (options.pinned.empty() || options.pinned[v] == 0);
+    const bool free = jacobi[v] > 0 && (options.pinned.empty() || (options.pinned[v] & kHeldHeight) == 0);
     jacobi[v] = free ? 1 / jacobi[v] : 0;
   }
   const auto precondition = [&](const std::vector<double>& r, std::vector<double>& y) {

@@ -25,10 +25,13 @@ struct FitPattern {
   std::uint32_t slot(std::uint32_t row, std::uint32_t column) const;
 };
 
+/// Marks of a vertex whose numbers are not to be solved for.
+inline constexpr std::uint8_t kHeldHeight = 1, kHeldGradient = 2;
+
 struct FitSolveOptions {
   CgLimits limits;
   bool heights_only = false;               ///< gradients follow the heights as the mean of the facets, weighted by area
-  std::span<const std::uint8_t> pinned{};  ///< of each vertex: its height stays
+  std::span<const std::uint8_t> pinned{};  ///< of each vertex: what stays of it (kHeldHeight, kHeldGradient)
 };
 
 /// Minimises the sum of the elements' costs over heights (and gradients) of all vertices, starting from `data`.

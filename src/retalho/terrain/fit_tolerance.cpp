@@ -95,7 +95,7 @@ class Refinement {
   void reweight_and_insert() {
     for (int round = 0; round < kPatience; ++round) {
       for (int k = 0; k < kReweightings; ++k) {
-        if (!reweight()) return;
+        if (!reweigh(s_, goal_, context_)) return;
         s_.solve(kRoughSolve, context_);
       }
       const std::vector<std::uint32_t> list = violating(scan());
@@ -106,38 +106,6 @@ class Refinement {
       s_.refresh(context_);
       s_.solve(kRoughSolve, context_);
     }
-  }
-
-  /// Lawson's weights: cells near the tolerance or over it count more. False where none is over it.
-  bool reweight() {
-    std::vector<std::uint8_t> touched(s_.mesh.triangle_count(), 0), over(touched);
-    parallel_chunks(touched.size(), 64, context_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const auto t = static_cast<std::uint32_t>(k);
-        each_error(s_.kind, s_.triangle(t), s_.corner_data(t), s_.grid, s_.weights.inside,
-                   [&](std::size_t cell, double error) {
-                     const double q = std::abs(error) / goal_, w = s_.cell_weights[cell];
-                     double next = std::max(1.0, 0.8 * w);
-                     if (q > 0.8) {
-                       const double near = 1 + 20 * ((q - 0.8) / 0.2) * ((q - 0.8) / 0.2);
-                       next = (std::max(w, 1.0) + std::max(w * (q > 1 ? 1.6 : 1), std::min(200.0, near))) / 2;
-                     }
-                     next = std::min(next, 1e4);
-                     if (q > 1) over[k] = 1;
-                     if (std::abs(next - w) <= 0.01 * w) return;
-                     s_.cell_weights[cell] = static_cast<float>(next);
-                     touched[k] = 1;
-                   });
-      }
-    });
-    if (std::find(over.begin(), over.end(), 1) == over.end()) return false;
-    s_.weights.cells = s_.cell_weights;
-    parallel_chunks(touched.size(), 32, context_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        if (touched[k] != 0)
-          s_.elements[k] = fit_element(s_.kind, s_.triangle(static_cast<std::uint32_t>(k)), s_.grid, s_.weights);
-    });
-    return true;
   }
 
   /// The end of every refinement: each violating cell becomes a vertex, and each violating vertex keeps its cell's
@@ -181,6 +149,37 @@ class Refinement {
 };
 
 }  // namespace
+
+bool reweigh(FitState& s, double tolerance, const Context& context) {
+  std::vector<std::uint8_t> touched(s.mesh.triangle_count(), 0), over(touched);
+  parallel_chunks(touched.size(), 64, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto t = static_cast<std::uint32_t>(k);
+      each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside,
+                 [&](std::size_t cell, double error) {
+                   const double q = std::abs(error) / tolerance, w = s.cell_weights[cell];
+                   double next = std::max(1.0, 0.8 * w);
+                   if (q > 0.8) {
+                     const double near = 1 + 20 * ((q - 0.8) / 0.2) * ((q - 0.8) / 0.2);
+                     next = (std::max(w, 1.0) + std::max(w * (q > 1 ? 1.6 : 1), std::min(200.0, near))) / 2;
+                   }
+                   next = std::min(next, 1e4);
+                   if (q > 1) over[k] = 1;
+                   if (std::abs(next - w) <= 0.01 * w) return;
+                   s.cell_weights[cell] = static_cast<float>(next);
+                   touched[k] = 1;
+                 });
+    }
+  });
+  if (std::find(over.begin(), over.end(), 1) == over.end()) return false;
+  s.weights.cells = s.cell_weights;
+  parallel_chunks(touched.size(), 32, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (touched[k] != 0)
+        s.elements[k] = fit_element(s.kind, s.triangle(static_cast<std::uint32_t>(k)), s.grid, s.weights);
+  });
+  return true;
+}
 
 Terrain refine_to_tolerance(FitState& state, const Raster& raster, const ToleranceOptions& options,
                             const Context& context) {

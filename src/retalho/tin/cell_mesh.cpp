@@ -166,8 +166,13 @@ bool CellMesh::wants_flip(std::uint32_t t, std::uint32_t k) const {
   const std::uint32_t n = neighbors_[t][k];
   if (n == kNone) return false;
   const auto &v = triangles_[t], &w = triangles_[n];
-  const std::uint32_t far = w[(corner_of(w, v[(k + 1) % 3]) + 1) % 3];
-  return inside_circle(cells_[v[0]], cells_[v[1]], cells_[v[2]], cells_[far]);
+  const Cell far = cells_[w[(corner_of(w, v[(k + 1) % 3]) + 1) % 3]];
+  const Cell near = cells_[v[k]], left = cells_[v[(k + 1) % 3]], right = cells_[v[(k + 2) % 3]];
+  const int side = greedy::circle_side(near, right, left, far);
+  if (side != 0) return side > 0;
+  // On one circle: the diagonal at the first of the four, whatever the order of the edits. With more than four this
+  // makes the fan around the first of them (the pulling triangulation).
+  return std::min(near, far) < std::min(left, right);
 }
 
 /// t = (a, b, c) with a its corner k, and (d, c, b) across b-c, become t = (a, b, d) and (a, d, c).
@@ -192,6 +197,7 @@ bool CellMesh::remove(std::uint32_t vertex) {
   for (const std::uint32_t t : s.triangles) outside.push_back(neighbors_[t][corner_of(triangles_[t], vertex)]);
   if (!s.closed) outside.push_back(kNone);  // the outline closes the ring
   fill_polygon(s.ring, outside, s.triangles);
+  restore({s.triangles.begin(), s.triangles.begin() + static_cast<std::ptrdiff_t>(s.ring.size()) - 2});
   // The polygon needs fewer triangles than the star had; the rest goes, the highest number first.
   std::vector<std::uint32_t> spare(s.triangles.begin() + static_cast<std::ptrdiff_t>(s.ring.size()) - 2,
                                    s.triangles.end());
@@ -274,6 +280,10 @@ void CellMesh::displace(std::uint32_t vertex, Cell to) {
 void CellMesh::restore() {
   std::vector<std::uint32_t> stack;
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) stack.push_back(t);
+  restore(std::move(stack));
+}
+
+void CellMesh::restore(std::vector<std::uint32_t> stack) {
   while (!stack.empty()) {
     const std::uint32_t t = stack.back();
     stack.pop_back();

@@ -1,7 +1,8 @@
 // A Delaunay triangulation of grid cells that can be edited: vertices inserted at any cell, moved and removed. The
 // convex outline stays as it is.
 //
-// Exact integer predicates. Triangles and vertices are numbered without gaps: a removal moves the last of each into the
+// Exact integer predicates; of four vertices on one circle the diagonal is the one at the first of them in raster order,
+// so that the triangulation depends on the set of its vertices alone, not on the edits that led to it. Triangles and vertices are numbered without gaps: a removal moves the last of each into the
 // free number. Triangles that an edit made, changed or renumbered are collected in changed().
 #pragma once
 
@@ -57,7 +58,7 @@ class CellMesh {
   bool can_move(std::uint32_t vertex, Cell to) const;
   /// Moves it without flips: call restore() after the last one. `can_move` must hold.
   void displace(std::uint32_t vertex, Cell to);
-  /// Flips until the triangulation is Delaunay again.
+  /// Flips until the triangulation is the canonical Delaunay one again.
   void restore();
 
   /// Triangles to be looked at again since the last clear_changed(), ascending.
@@ -75,6 +76,7 @@ class CellMesh {
   void legalise(std::vector<std::uint32_t>& stack);
   void split(std::uint32_t t, std::uint32_t vertex);
   void split_edge(std::uint32_t t, std::uint32_t k, std::uint32_t vertex);
+  void restore(std::vector<std::uint32_t> stack);
   void fill_polygon(std::vector<std::uint32_t> ring, std::vector<std::uint32_t> outside,
                     const std::vector<std::uint32_t>& slots);
 

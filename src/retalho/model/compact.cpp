@@ -1,0 +1,144 @@
+#include "retalho/model/compact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "retalho/core/error.h"
+#include "retalho/model/compact_file.h"
+#include "retalho/terrain/held_fit.h"
+#include "retalho/terrain/report.h"
+#include "retalho/terrain/surface_refine.h"
+
+namespace retalho {
+namespace {
+
+using greedy::Cell;
+
+constexpr double kLoose = 1e-3, kTight = 1e-6;  // of the fit's residual: between groups of numbers, and before them
+
+void check(const CompactOptions& o) {
+  if (o.surface != SurfaceKind::linear && o.surface != SurfaceKind::clough_tocher)
+    throw UsageError(fmt::format("the compact form holds linear and Clough-Tocher surfaces, not {}",
+                                 surface_name(o.surface)),
+                     {}, "surface");
+  if (o.heights_only && o.surface == SurfaceKind::linear)
+    throw UsageError("a linear surface has heights only as it is", {}, "heights_only");
+  if (!(o.max_error >= 0) || std::isinf(o.max_error))
+    throw UsageError(fmt::format("the largest error must be 0 or more, not {}", o.max_error), {}, "max_error");
+  if (!(o.height_step >= 0) || std::isinf(o.height_step))
+    throw UsageError(fmt::format("the height step must be 0 or more, not {}", o.height_step), {}, "height_step");
+  if (!(o.slope_weight >= 0) || std::isinf(o.slope_weight))
+    throw UsageError(fmt::format("the slope weight must be 0 or more, not {}", o.slope_weight), {}, "slope_weight");
+}
+
+/// Two digits: a step in three bytes of header.
+double short_number(double value, int digits) {
+  double result = value;
+  const std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
+}
+
+class FitSource : public ValueSource {
+ public:
+  explicit FitSource(HeldFit& fit) : fit_(fit) {}
+  void settle() override { fit_.solve(kLoose, 60); }
+  double height(std::uint32_t v) override { return fit_.height(v); }
+  Vec2 gradient(std::uint32_t v) override { return fit_.gradient(v); }
+  void coded_height(std::uint32_t v, double height) override { fit_.hold_height(v, height); }
+  void coded_gradient(std::uint32_t v, Vec2 gradient) override { fit_.hold_gradient(v, gradient); }
+
+ private:
+  HeldFit& fit_;
+};
+
+std::vector<Cell> cells_of(const Terrain& terrain, const Raster& raster) {
+  std::vector<Cell> cells;
+  for (const Vec2 p : terrain.tin.points) {
+    const double column = std::nearbyint(p.x / raster.cell_width), row = std::nearbyint(-p.y / raster.cell_height);
+    if (!(column >= 0 && column < raster.columns && row >= 0 && row < raster.rows) ||
+        std::abs(column - p.x / raster.cell_width) > 1e-6 || std::abs(row + p.y / raster.cell_height) > 1e-6)
+      throw BadInput("this terrain has no compact form: a vertex is no cell of the grid");
+    cells.push_back(greedy::cell_at(static_cast<int>(column), static_cast<int>(row)));
+  }
+  std::sort(cells.begin(), cells.end());
+  if (std::adjacent_find(cells.begin(), cells.end()) != cells.end())
+    throw BadInput("this terrain has no compact form: two vertices lie in one cell");
+  return cells;
+}
+
+CompactFrameFacts facts_of(const Raster& raster, const CompactOptions& options) {
+  CompactFrameFacts facts;
+  facts.kind = options.surface;
+  facts.heights_only = options.heights_only;
+  facts.georef = raster.georef;
+  facts.grid = {raster.columns, raster.rows, raster.cell_width, raster.cell_height, {}};
+  if (Mask valid = valid_mask(raster); valid.count() < raster.cells()) facts.grid.valid = std::move(valid);
+  facts.tolerance = options.max_error;
+  return facts;
+}
+
+HeldFitOptions fit_options(const CompactOptions& options) {
+  return {.surface = options.surface, .heights_only = options.heights_only, .slope_weight = options.slope_weight};
+}
+
+double rmse_of(const std::vector<double>& errors) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const double e : errors)
+    if (!std::isnan(e)) {
+      sum += e * e;
+      ++count;
+    }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, count)));
+}
+
+/// The step and the reference, rounded to what is short to write.
+void set_steps(CompactFrameFacts& facts, double step, double mean) {
+  facts.steps.height = short_number(step, 2);
+  facts.reference = short_number(std::round(mean / step) * step, 4);
+}
+
+CompactEncoding encode(HeldFit& fit, const CompactFrameFacts& facts, const std::vector<Cell>& cells,
+                       const Context& context) {
+  FitSource source(fit);
+  return encode_compact(facts, cells, source, context);
+}
+
+CompactModel by_budget(const std::vector<Cell>& cells, const Raster& raster, const CompactOptions& options,
+                       const Context& context) {
+  constexpr double kStep = 1.5;  // of the fit's error
+  CompactFrameFacts facts = facts_of(raster, options);
+  HeldFit fit(raster, cells, fit_options(options), context);
+  fit.solve(kTight);
+  const double step = options.height_step > 0 ? options.height_step : kStep * rmse_of(fit.errors());
+  const RasterSummary summary = summarize(raster);
+  const double least = 1e-9 * std::max(1.0, summary.maximum - summary.minimum);
+  set_steps(facts, std::max(step, least), summary.mean);
+  CompactEncoding encoding = encode(fit, facts, cells, context);
+  return {std::move(encoding.bytes), std::move(encoding.terrain)};
+}
+
+}  // namespace
+
+CompactModel compact_terrain(const Terrain& terrain, const Raster& raster, const CompactOptions& options,
+                             const Context& context) {
+  check(options);
+  return by_budget(cells_of(terrain, raster), raster, options, context);
+}
+
+CompactModel fit_compact(const Raster& raster, const CompactOptions& options, const Context& context) {
+  check(options);
+  const Terrain terrain = refine_surface(raster,
+                                         {.surface = options.surface,
+                                          .vertices = options.vertices,
+                                          .slope_weight = options.slope_weight},
+                                         context);
+  return by_budget(cells_of(terrain, raster), raster, options, context);
+}
+
+}  // namespace retalho

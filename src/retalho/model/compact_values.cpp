@@ -1,0 +1,253 @@
+#include "retalho/model/compact_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retalho {
+namespace {
+
+constexpr int kLargest = 1 << 29;  // steps
+
+/// 2^(k / 8) by products of exactly rounded numbers.
+double eighth_octaves(int k) {
+  static constexpr double kRoot[8] = {1,
+                                      1.0905077326652577,
+                                      1.189207115002721,
+                                      1.2968395546510096,
+                                      1.4142135623730951,
+                                      1.5422108254079407,
+                                      1.681792830507429,
+                                      1.8340080864093424};
+  const int whole = k >= 0 ? k / 8 : -((7 - k) / 8);
+  return std::ldexp(kRoot[k - 8 * whole], whole);
+}
+
+/// The mean of what has been seen lately.
+class Lately {
+ public:
+  void add(double value) {
+    sum_ += value;
+    if (++count_ <= 400) return;
+    sum_ /= 2;
+    count_ /= 2;
+  }
+  double mean(double otherwise) const { return count_ > 0 ? sum_ / count_ : otherwise; }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
+
+class Values {
+ public:
+  Values(BitCoder& coder, const CompactFrame& frame, const CompactSteps& steps, ValueSource* source)
+      : coder_(coder),
+        frame_(frame),
+        steps_(steps),
+        source_(source),
+        count_(frame.cells.size()),
+        data_(count_, VertexJet{0, 0, 0}),
+        known_(count_, 0),
+        roughness_(count_, 0.0) {
+    for (const greedy::Cell c : frame.cells)
+      points_.push_back({greedy::column_of(c) * frame.step.x, -greedy::row_of(c) * frame.step.y});
+    measure_stars();
+  }
+
+  void heights(const Context& context) {
+    coarsest();
+    for (std::size_t l = 1; l < frame_.levels.size(); ++l) {
+      context.check();
+      level(l);
+    }
+  }
+
+  void gradients(const Context& context);
+
+  std::vector<VertexJet> take() { return std::move(data_); }
+
+ private:
+  void measure_stars() {
+    const CellMesh& mesh = frame_.levels.back().mesh;
+    const auto& vertex = frame_.levels.back().vertex;
+    star_.assign(count_, 0.0);
+    for (const auto& t : mesh.triangles()) {
+      const auto twice = static_cast<double>(greedy::area2(mesh.cell(t[0]), mesh.cell(t[2]), mesh.cell(t[1])));
+      total_ += twice / 2;
+      for (const std::uint32_t v : t) star_[vertex[v]] += twice / 6;
+    }
+    const double mean = total_ / static_cast<double>(count_);
+    for (std::size_t v = 0; v < count_; ++v) {
+      star_[v] = std::max(star_[v], 0.5);
+      const int octaves = log2_class(mean / star_[v], 8);  // in eighths
+      const int scaled = octaves * steps_.crowding;        // in eighths of sixteenths
+      height_step_.push_back(steps_.height *
+                             eighth_octaves(scaled >= 0 ? (scaled + 8) / 16 : -((8 - scaled) / 16)));
+      slope_step_.push_back(steps_.slope * 0.25 * height_step_[v] / std::sqrt(star_[v]));
+    }
+  }
+
+  int rounded(double target, double prediction, double step) const {
+    const double q = std::floor((target - prediction) / step + 0.5);
+    return static_cast<int>(std::clamp(q, -static_cast<double>(kLargest), static_cast<double>(kLargest)));
+  }
+
+  void coarsest() {
+    if (source_) source_->settle();
+    for (const std::uint32_t v : frame_.levels.front().fresh) {
+      const int q = source_ ? rounded(source_->height(v), frame_.reference, height_step_[v]) : 0;
+      const std::uint32_t size = coder_.code_gamma(static_cast<std::uint32_t>(std::abs(q)) + 1) - 1;
+      const bool negative = size != 0 && coder_.code_even(q < 0);
+      const double magnitude = size * height_step_[v];
+      settle_height(v, frame_.reference + (negative ? -magnitude : magnitude));
+    }
+  }
+
+  void settle_height(std::uint32_t v, double height) {
+    data_[v][0] = height;
+    known_[v] = 1;
+    if (source_) source_->coded_height(v, height);
+  }
+
+  /// The surface over a level, with the gradients of its facets.
+  std::vector<VertexJet> surface_of(const CellLevel& level) const {
+    std::vector<VertexJet> data;
+    std::vector<Vec2> points;
+    for (const std::uint32_t v : level.vertex) {
+      data.push_back(data_[v]);
+      points.push_back(points_[v]);
+    }
+    facet_gradients(points, level.mesh.triangles(), data);
+    return data;
+  }
+
+  void level(std::size_t l) {
+    const CellLevel &here = frame_.levels[l], &coarse = frame_.levels[l - 1];
+    const std::vector<VertexJet> surface = surface_of(coarse);
+    if (source_) source_->settle();
+    const int age = static_cast<int>(std::min<std::size_t>(5, frame_.levels.size() - 1 - l));
+    const double mean_side = std::sqrt(total_ / static_cast<double>(count_));
+    CellMesh::Star star;
+    std::uint32_t near = 0;
+    for (const std::uint32_t v : here.fresh) {
+      near = coarse.mesh.locate(frame_.cells[v], near);
+      const auto& t = coarse.mesh.triangles()[near];
+      const auto place = [&](std::size_t k) { return points_[coarse.vertex[t[k]]]; };
+      const double prediction = clough_tocher_height({place(0), place(1), place(2)},
+                                                     {surface[t[0]], surface[t[1]], surface[t[2]]}, points_[v]);
+      here.mesh.star(here.number[v], star);
+      double sides = 0, rough = 0;
+      int rough_count = 0;
+      for (const std::uint32_t k : star.ring) {
+        const std::uint32_t w = here.vertex[k];
+        const double dx = points_[v].x - points_[w].x, dy = points_[v].y - points_[w].y;
+        sides += std::sqrt(dx * dx + dy * dy);
+        if (roughness_[w] > 0) {
+          rough += roughness_[w];
+          ++rough_count;
+        }
+      }
+      const double side = sides / static_cast<double>(star.ring.size()), step = height_step_[v];
+      rough = (rough + lately_.mean(steps_.height / 4)) / (rough_count + 1);
+      const int size = 8 + log2_class(rough * side / step, 2);
+      const int length = std::clamp(4 + log2_class(side / mean_side, 2), 0, 9);
+      const int q = source_ ? rounded(source_->height(v), prediction, step) : 0;
+      const int coded = heights_.code(coder_, q, size, age * 10 + length,
+                                      std::clamp(size / 2, 0, 15) * 4 + std::min(3, length / 3), 0);
+      roughness_[v] = std::max(std::abs(coded * step), 0.3 * step) / side;
+      lately_.add(roughness_[v]);
+      settle_height(v, prediction + coded * step);
+    }
+  }
+
+  BitCoder& coder_;
+  const CompactFrame& frame_;
+  const CompactSteps& steps_;
+  ValueSource* source_;
+  std::size_t count_;
+  std::vector<VertexJet> data_;
+  std::vector<std::uint8_t> known_;
+  std::vector<double> roughness_;  // of each height: how far from its prediction, by distance
+  std::vector<Vec2> points_;
+  std::vector<double> star_, height_step_, slope_step_;
+  double total_ = 0;
+  Lately lately_;
+  IntegerCoder heights_, slopes_x_, slopes_y_;
+};
+
+void Values::gradients(const Context& context) {
+  constexpr std::size_t kGroups = 4;
+  const CellLevel& finest = frame_.levels.back();
+  std::vector<Vec2> points;
+  std::vector<VertexJet> data;
+  for (const std::uint32_t v : finest.vertex) {
+    points.push_back(points_[v]);
+    data.push_back(data_[v]);
+  }
+  facet_gradients(points, finest.mesh.triangles(), data);
+  const Bending bending(points, finest.mesh.triangles());
+  std::vector<std::uint8_t> held(count_, 0);
+  std::vector<double> missed(count_, 0.0);  // how far each gradient was from its prediction
+  Lately ratio;
+  const double mean_star = total_ / static_cast<double>(count_);
+  const std::size_t levels = frame_.levels.size(), old = levels - std::min(levels, kGroups - 1);
+  CellMesh::Star star;
+  for (std::size_t group = old == 0 ? 1 : 0; group < kGroups && (group == 0 || old + group - 1 < levels); ++group) {
+    context.check();
+    std::vector<std::uint32_t> list;
+    if (group == 0) {
+      for (std::size_t l = 0; l < old; ++l)
+        list.insert(list.end(), frame_.levels[l].fresh.begin(), frame_.levels[l].fresh.end());
+    } else {
+      list = frame_.levels[old + group - 1].fresh;
+    }
+    bending.relax(data, held);
+    if (source_) source_->settle();
+    for (const std::uint32_t v : list) {
+      const std::uint32_t k = finest.number[v];
+      finest.mesh.star(k, star);
+      double rough = 2 * roughness_[v], weights = 2, near = 0;
+      int near_count = 0;
+      for (const std::uint32_t n : star.ring) {
+        const std::uint32_t w = finest.vertex[n];
+        rough += roughness_[w];
+        weights += 1;
+        if (missed[w] > 0) {
+          near += missed[w];
+          ++near_count;
+        }
+      }
+      rough /= weights;
+      const double step = slope_step_[v], from_heights = rough * ratio.mean(1);
+      const double expected = (from_heights * 2 + near) / (2 + near_count) / step;
+      const int size = 8 + log2_class(expected, 2), half = std::clamp(size / 2, 0, 15) * 4;
+      const int crowd = std::clamp(4 + log2_class(star_[v] / mean_star, 1), 0, 9);
+      const Vec2 target = source_ ? source_->gradient(v) : Vec2{};
+      const int wanted_x = source_ ? rounded(target.x, data[k][1], step) : 0;
+      const int wanted_y = source_ ? rounded(target.y, data[k][2], step) : 0;
+      const int x = slopes_x_.code(coder_, wanted_x, size, static_cast<int>(std::min<std::size_t>(group, 5)) * 10 + crowd,
+                                   half + std::min(3, near_count), 0);
+      const int y = slopes_y_.code(coder_, wanted_y, size, std::min(std::abs(x), 5) * 10 + crowd,
+                                   half + std::min(3, std::abs(x)), x == 0 ? 0 : x > 0 ? 1 : 2);
+      data[k][1] += x * step;
+      data[k][2] += y * step;
+      missed[v] = std::max(0.3 * step, (std::abs(x * step) + std::abs(y * step)) / 2);
+      ratio.add(missed[v] / std::max(rough, 1e-9));
+      held[k] = 1;
+      if (source_) source_->coded_gradient(v, {data[k][1], data[k][2]});
+    }
+  }
+  for (std::uint32_t k = 0; k < count_; ++k) data_[finest.vertex[k]] = data[k];
+}
+
+}  // namespace
+
+std::vector<VertexJet> code_values(BitCoder& coder, const CompactFrame& frame, const CompactSteps& steps,
+                                   bool gradients, ValueSource* source, const Context& context) {
+  Values values(coder, frame, steps, source);
+  values.heights(context);
+  if (gradients) values.gradients(context);
+  return values.take();
+}
+
+}  // namespace retalho
