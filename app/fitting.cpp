@@ -20,6 +20,8 @@ const std::vector<std::string> kGradients{"normals", "quadratic", "network"};
 const std::vector<std::string> kCrossDerivatives{"perpendicular", "cubic"};
 const std::vector<std::string> kFits{"interpolate", "least-squares", "z-only"};
 const std::vector<std::string> kRefinements{"flat", "surface"};
+const std::vector<std::string> kFormats{"exact", "compact"};
+constexpr const char* kAuto = "auto";
 
 }  // namespace
 
@@ -63,7 +65,7 @@ Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t val
 }
 
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
-  command.add_option("--surface", flags.surface, "linear, powell-sabin or clough-tocher (default)")->type_name("KIND");
+  command.add_option("--surface", flags.surface, "linear, powell-sabin or clough-tocher (default); with --format compact also auto: the smallest file")->type_name("KIND");
   command
       .add_option("--gradients", flags.gradients,
                   "At vertices: normals (default for grids), quadratic (default for points) or network")
@@ -83,6 +85,35 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
           "Grids: vertices chosen for the flat triangulation (default), or surface: for the surface itself, with "
           "heights and gradients fitted to every cell")
       ->type_name("KIND");
+  command
+      .add_option("--format", flags.format,
+                  "exact: every number as computed (default), or compact: refined by the surface, rounded within the "
+                  "tolerance, a tenth of the bytes (grids; linear and clough-tocher)")
+      ->type_name("FORM");
+}
+
+bool compact_format(const SurfaceFlags& flags) {
+  const bool compact = choose("--format", flags.format, kFormats) == 1;
+  if (!compact && flags.surface == kAuto)
+    throw UsageError("--surface auto chooses by the size of the file: it needs --format compact", {}, "--surface");
+  return compact;
+}
+
+std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from_points) {
+  const auto refuse = [](const std::string& what, const char* where) {
+    throw UsageError("--format compact " + what, {}, where);
+  };
+  if (from_points) refuse("takes grids: its vertices are their cells", "--format");
+  if (!flags.gradients.empty()) refuse("fits the gradients: leave --gradients out", "--gradients");
+  if (flags.cross_derivative != kCrossDerivatives[0]) refuse("takes --cross-derivative perpendicular", "--cross-derivative");
+  choose("--refine", flags.refine, kRefinements);
+  const bool z_only = choose("--fit", flags.fit, kFits) == 2;
+  if (flags.surface == kAuto)
+    return {{.surface = SurfaceKind::clough_tocher}, {.surface = SurfaceKind::linear}};
+  const auto kind = static_cast<SurfaceKind>(choose("--surface", flags.surface, kSurfaces) + 1);
+  if (kind == SurfaceKind::powell_sabin) refuse("holds linear and clough-tocher surfaces", "--surface");
+  if (z_only && kind == SurfaceKind::linear) refuse("--fit z-only is for clough-tocher", "--fit");
+  return {{.surface = kind, .heights_only = z_only}};
 }
 
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {

@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "program.h"
+#include "retalho/model/compact.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
@@ -38,6 +40,7 @@ struct SurfaceFlags {
   std::string cross_derivative = "perpendicular";
   std::string fit = "interpolate";
   std::string refine = "flat";
+  std::string format = "exact";
 };
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
 /// Gradients that are not asked for: the vertices of a refined grid are its peaks and pits, where fitted gradients
@@ -51,6 +54,11 @@ enum class FitKind : std::uint8_t { interpolate, least_squares, z_only };
 FitKind resolve_fit(const SurfaceFlags& flags, bool from_points);
 /// --refine surface: the vertices are chosen by the surface's own error. Throws as resolve_fit.
 bool refines_surface(const SurfaceFlags& flags, bool from_points);
+/// --format compact: numbers rounded, the fit knows of it (model/compact.h).
+bool compact_format(const SurfaceFlags& flags);
+/// Which surfaces a compact file may hold: --surface auto gives several, of which the smallest file counts. Throws
+/// UsageError for what does not go together.
+std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from_points);
 /// The surface on a grid's triangulation, fitted as asked for.
 Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context);
 

@@ -7,6 +7,7 @@
 #include "fit_tiles.h"
 #include "fitting.h"
 #include "inputs.h"
+#include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/terrain/point_report.h"
@@ -32,7 +33,34 @@ struct Fit {
   ErrorReport errors;
   bool has_slope = true;
   double seconds_triangulation = 0;
+  std::string compact;  ///< the file's bytes, with --format compact
 };
+
+Fit fit_compactly(const Program& program, const Options& options, const Context& context) {
+  const std::vector<CompactOptions> kinds = compact_options(options.surface, false);
+  RasterSummary summary;
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const Budget budget =
+      resolve(program, options.budget, summary.valid, summary.valid > 0 ? summary.maximum - summary.minimum : 0);
+  if (budget.tolerance && budget.max_error == 0)
+    throw UsageError("--format compact takes a --max-error over 0", {}, "--max-error");
+  if (kinds.size() > 1 && budget.max_error == 0)
+    throw UsageError("--surface auto chooses among files of the same error: give --max-error", {}, "--surface");
+  Fit best;
+  const Stopwatch watch;
+  for (CompactOptions kind : kinds) {
+    kind.max_error = budget.max_error;
+    kind.vertices = budget.vertices;
+    CompactModel model = fit_compact(raster, kind, context);
+    if (kinds.size() > 1) program.say(fmt::format("{}: {} bytes", surface_name(kind.surface), model.bytes.size()));
+    if (!best.compact.empty() && best.compact.size() <= model.bytes.size()) continue;
+    best.compact = std::move(model.bytes);
+  }
+  best.seconds_triangulation = watch.seconds();
+  best.terrain = std::get<Terrain>(decode_model(best.compact));  // judged by what is in the file
+  best.errors = assess(best.terrain, raster, budget.max_error, context);
+  return best;
+}
 
 Fit fit_grid(const Program& program, const Options& options, const SurfaceOptions& surface, const Context& context) {
   RasterSummary summary;
@@ -109,24 +137,32 @@ void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   if (options.tiles.size) {
     if (takes_points(options.input, options.points)) throw UsageError("--tiles takes grids", {}, "--tiles");
+    if (compact_format(options.surface))
+      throw UsageError("--tiles writes exact models: leave --format compact out", {}, "--format");
     return fit_tiles(program, options.tiles, options.input, options.output, options.grid, options.budget,
                      options.surface);
   }
   if (options.tiles.jobs != 0) throw UsageError("--jobs goes with --tiles", {}, "--jobs");
-  const SurfaceOptions surface = resolve(options.surface, takes_points(options.input, options.points));
-  resolve_fit(options.surface, takes_points(options.input, options.points));
-  refines_surface(options.surface, takes_points(options.input, options.points));
+  const bool from_points = takes_points(options.input, options.points), compact = compact_format(options.surface);
+  if (compact) compact_options(options.surface, from_points);
+  const SurfaceOptions surface = compact ? SurfaceOptions{} : resolve(options.surface, from_points);
+  const bool by_surface = compact || refines_surface(options.surface, from_points);
+  if (!compact) resolve_fit(options.surface, from_points);
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
-  const Fit fit = takes_points(options.input, options.points) ? fit_points(program, options, surface, context)
-                                                              : fit_grid(program, options, surface, context);
+  const Fit fit = compact       ? fit_compactly(program, options, context)
+                  : from_points ? fit_points(program, options, surface, context)
+                                : fit_grid(program, options, surface, context);
   context.check();
-  save_model(fit.terrain, options.output, program.overwrite);
+  if (compact)
+    write_file(options.output, fit.compact, program.overwrite);
+  else
+    save_model(fit.terrain, options.output, program.overwrite);
   ModelReport report = facts_of(fit.terrain);
   report.bytes = std::filesystem::file_size(options.output);
   report.errors = fit.errors;
   report.has_slope = fit.has_slope;
-  report.refined = refines_surface(options.surface, takes_points(options.input, options.points));
+  report.refined = by_surface;
   say_violations(program, report);
   nlohmann::ordered_json json = to_json(report);
   json["seconds"] = watch.seconds();
@@ -147,6 +183,7 @@ void add_fit(CLI::App& root, Program& program) {
                   "retalho fit dem.tif -o flat.retalho --surface linear --ratio 1%\n"
                   "retalho fit dem.tif -o smooth.retalho --refine surface --ratio 1%\n"
                   "retalho fit country.vrt -o country --tiles 2048 --max-error 1\n"
+                  "retalho fit dem.tif -o small.retalho --max-error 2 --format compact\n"
                   "retalho fit soundings.xyz -o seabed.retalho --surface powell-sabin\n"
                   "retalho fit survey.gpkg --height-field elevation -o site.retalho --max-error 0.1");
   command->add_option("DEM", options->input, "Elevation grid, or points (.xyz .csv .ply, vector layers)")

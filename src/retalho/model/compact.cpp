@@ -9,6 +9,8 @@
 
 #include "retalho/core/error.h"
 #include "retalho/model/compact_file.h"
+#include "retalho/model/compact_tolerance.h"
+#include "retalho/model/fit_source.h"
 #include "retalho/terrain/held_fit.h"
 #include "retalho/terrain/report.h"
 #include "retalho/terrain/surface_refine.h"
@@ -18,7 +20,7 @@ namespace {
 
 using greedy::Cell;
 
-constexpr double kLoose = 1e-3, kTight = 1e-6;  // of the fit's residual: between groups of numbers, and before them
+constexpr double kTight = 1e-6;  // of the fit's residual
 
 void check(const CompactOptions& o) {
   if (o.surface != SurfaceKind::linear && o.surface != SurfaceKind::clough_tocher)
@@ -42,19 +44,6 @@ double short_number(double value, int digits) {
   std::from_chars(text.data(), text.data() + text.size(), result);
   return result;
 }
-
-class FitSource : public ValueSource {
- public:
-  explicit FitSource(HeldFit& fit) : fit_(fit) {}
-  void settle() override { fit_.solve(kLoose, 60); }
-  double height(std::uint32_t v) override { return fit_.height(v); }
-  Vec2 gradient(std::uint32_t v) override { return fit_.gradient(v); }
-  void coded_height(std::uint32_t v, double height) override { fit_.hold_height(v, height); }
-  void coded_gradient(std::uint32_t v, Vec2 gradient) override { fit_.hold_gradient(v, gradient); }
-
- private:
-  HeldFit& fit_;
-};
 
 std::vector<Cell> cells_of(const Terrain& terrain, const Raster& raster) {
   std::vector<Cell> cells;
@@ -98,8 +87,9 @@ double rmse_of(const std::vector<double>& errors) {
 }
 
 /// The step and the reference, rounded to what is short to write.
-void set_steps(CompactFrameFacts& facts, double step, double mean) {
-  facts.steps.height = short_number(step, 2);
+void set_steps(CompactFrameFacts& facts, double step, double mean, std::size_t vertices) {
+  const double star = static_cast<double>(facts.grid.columns) * facts.grid.rows / static_cast<double>(vertices);
+  facts.steps.height = short_number(step * std::pow(star, facts.steps.crowding / 16.0), 2);
   facts.reference = short_number(std::round(mean / step) * step, 4);
 }
 
@@ -118,10 +108,13 @@ CompactModel by_budget(const std::vector<Cell>& cells, const Raster& raster, con
   const double step = options.height_step > 0 ? options.height_step : kStep * rmse_of(fit.errors());
   const RasterSummary summary = summarize(raster);
   const double least = 1e-9 * std::max(1.0, summary.maximum - summary.minimum);
-  set_steps(facts, std::max(step, least), summary.mean);
+  set_steps(facts, std::max(step, least), summary.mean, cells.size());
   CompactEncoding encoding = encode(fit, facts, cells, context);
   return {std::move(encoding.bytes), std::move(encoding.terrain)};
 }
+
+
+double env(const char* n, double d) { const char* t = std::getenv(n); return t ? std::atof(t) : d; }
 
 }  // namespace
 
@@ -133,8 +126,18 @@ CompactModel compact_terrain(const Terrain& terrain, const Raster& raster, const
 
 CompactModel fit_compact(const Raster& raster, const CompactOptions& options, const Context& context) {
   check(options);
+  if (options.max_error > 0) {
+    const Terrain terrain = refine_surface(raster, {.surface = options.heights_only ? SurfaceKind::linear : options.surface, .max_error = env("REF", 0.95) * options.max_error, .slope_weight = options.slope_weight}, context);
+    CompactFrameFacts facts = facts_of(raster, options);
+    facts.steps.crowding = static_cast<std::uint8_t>(env("CROWD", 2));
+    facts.steps.slope = static_cast<std::uint8_t>(env("SLOPE", 20));
+    const std::vector<Cell> cells = cells_of(terrain, raster);
+    set_steps(facts, options.height_step > 0 ? options.height_step : env("DZ", 0.4) * options.max_error, summarize(raster).mean, cells.size());
+    CompactEncoding e = encode_within(options.max_error, cells, raster, facts, fit_options(options), context);
+    return {std::move(e.bytes), std::move(e.terrain)};
+  }
   const Terrain terrain = refine_surface(raster,
-                                         {.surface = options.surface,
+                                         {.surface = options.heights_only ? SurfaceKind::linear : options.surface,
                                           .vertices = options.vertices,
                                           .slope_weight = options.slope_weight},
                                          context);

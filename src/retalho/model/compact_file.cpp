@@ -254,14 +254,19 @@ CompactEncoding encode_compact(const CompactFrameFacts& facts, const std::vector
     throw BadInput("this terrain has no compact form: " + fault);
   ByteWriter header;
   write_header(header, facts, cells.size());
+  const std::string padded = header.bytes() + std::string(cells.size() / kVerticesAByte, '\0');
+  ByteReader again(padded);
+  std::uint64_t vertices = 0;
+  CompactFrameFacts read = read_header(again, vertices);  // what the reader will know: -0 is 0
+  read.grid.valid = facts.grid.valid;
   BitCoder coder;
-  Payload payload = code_payload(coder, facts, cells.size(), cells, &source, context);
+  Payload payload = code_payload(coder, read, cells.size(), cells, &source, context);
   CompactEncoding result;
   std::string content = header.bytes() + coder.finish();
   const std::uint64_t least = cells.size() > kFreeVertices ? (cells.size() - kFreeVertices) / kVerticesAByte + 1 : 0;
   if (content.size() - header.bytes().size() < least) content.resize(header.bytes().size() + least, '\0');
   result.bytes = seal_compact(content);
-  result.terrain = assemble(facts, payload);
+  result.terrain = assemble(read, payload);
   if (const std::string fault = find_fault(result.terrain, true); !fault.empty())
     throw BadInput("this terrain has no compact form: " + fault);
   return result;

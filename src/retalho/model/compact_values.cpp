@@ -38,6 +38,18 @@ class Lately {
   int count_ = 0;
 };
 
+/// How many cells each vertex stands for: a third of its triangles; half a cell at least.
+std::vector<double> stars_of(const CellTriangulation& finest) {
+  std::vector<double> star(finest.vertex.size(), 0.0);
+  for (const auto& t : finest.mesh.triangles()) {
+    const auto at = [&](std::size_t k) { return finest.mesh.cell(t[k]); };
+    const auto twice = static_cast<double>(greedy::area2(at(0), at(2), at(1)));
+    for (const std::uint32_t v : t) star[finest.vertex[v]] += twice / 6;
+  }
+  for (double& s : star) s = std::max(s, 0.5);
+  return star;
+}
+
 class Values {
  public:
   Values(BitCoder& coder, const CompactFrame& frame, const CompactSteps& steps, ValueSource* source)
@@ -51,7 +63,11 @@ class Values {
         roughness_(count_, 0.0) {
     for (const greedy::Cell c : frame.cells)
       points_.push_back({greedy::column_of(c) * frame.step.x, -greedy::row_of(c) * frame.step.y});
-    measure_stars();
+    star_ = stars_of(frame.levels.back());
+    for (const double star : star_) total_ += star;
+    LatticeSteps lattice = lattice_steps(frame.levels.back(), steps);
+    height_step_ = std::move(lattice.height);
+    slope_step_ = std::move(lattice.slope);
   }
 
   void heights(const Context& context) {
@@ -67,35 +83,34 @@ class Values {
   std::vector<VertexJet> take() { return std::move(data_); }
 
  private:
-  void measure_stars() {
-    const CellMesh& mesh = frame_.levels.back().mesh;
-    const auto& vertex = frame_.levels.back().vertex;
-    star_.assign(count_, 0.0);
-    for (const auto& t : mesh.triangles()) {
-      const auto twice = static_cast<double>(greedy::area2(mesh.cell(t[0]), mesh.cell(t[2]), mesh.cell(t[1])));
-      total_ += twice / 2;
-      for (const std::uint32_t v : t) star_[vertex[v]] += twice / 6;
-    }
-    const double mean = total_ / static_cast<double>(count_);
-    for (std::size_t v = 0; v < count_; ++v) {
-      star_[v] = std::max(star_[v], 0.5);
-      const int octaves = log2_class(mean / star_[v], 8);  // in eighths
-      const int scaled = octaves * steps_.crowding;        // in eighths of sixteenths
-      height_step_.push_back(steps_.height *
-                             eighth_octaves(scaled >= 0 ? (scaled + 8) / 16 : -((8 - scaled) / 16)));
-      slope_step_.push_back(steps_.slope * 0.25 * height_step_[v] / std::sqrt(star_[v]));
-    }
-  }
+  /// A number's place on its lattice of whole steps: which step its prediction is next to, on which side of it the
+  /// prediction lies, and how far (0 to 3).
+  struct Guess {
+    double base;
+    bool below;
+    int shade;
 
-  int rounded(double target, double prediction, double step) const {
-    const double q = std::floor((target - prediction) / step + 0.5);
-    return static_cast<int>(std::clamp(q, -static_cast<double>(kLargest), static_cast<double>(kLargest)));
-  }
+    Guess(double prediction, double step) {
+      const double at = prediction / step;
+      base = std::floor(at + 0.5);
+      below = at < base;
+      shade = std::clamp(static_cast<int>(std::abs(at - base) * 8), 0, 3);
+    }
+    /// Steps from the base to the target, counted towards the prediction's side.
+    int towards(double target, double step) const {
+      const double q = std::floor(target / step + 0.5) - base, limit = kLargest;
+      return static_cast<int>(std::clamp(below ? -q : q, -limit, limit));
+    }
+    double value(int q, double step) const { return (base + (below ? -q : q)) * step; }
+  };
 
   void coarsest() {
     if (source_) source_->settle();
     for (const std::uint32_t v : frame_.levels.front().fresh) {
-      const int q = source_ ? rounded(source_->height(v), frame_.reference, height_step_[v]) : 0;
+      const double limit = kLargest;
+      const int q = source_ ? static_cast<int>(std::clamp(
+                                  std::floor((source_->height(v) - frame_.reference) / height_step_[v] + 0.5), -limit, limit))
+                            : 0;
       const std::uint32_t size = coder_.code_gamma(static_cast<std::uint32_t>(std::abs(q)) + 1) - 1;
       const bool negative = size != 0 && coder_.code_even(q < 0);
       const double magnitude = size * height_step_[v];
@@ -151,12 +166,14 @@ class Values {
       rough = (rough + lately_.mean(steps_.height / 4)) / (rough_count + 1);
       const int size = 8 + log2_class(rough * side / step, 2);
       const int length = std::clamp(4 + log2_class(side / mean_side, 2), 0, 9);
-      const int q = source_ ? rounded(source_->height(v), prediction, step) : 0;
-      const int coded = heights_.code(coder_, q, size, age * 10 + length,
-                                      std::clamp(size / 2, 0, 15) * 4 + std::min(3, length / 3), 0);
-      roughness_[v] = std::max(std::abs(coded * step), 0.3 * step) / side;
+      const Guess guess(prediction - frame_.reference, step);
+      const int q = source_ ? guess.towards(source_->height(v) - frame_.reference, step) : 0;
+      const int coded = heights_.code(coder_, q, size, age * 10 + length, std::clamp(size / 2, 0, 15) * 4 + guess.shade,
+                                      guess.shade);
+      const double height = frame_.reference + guess.value(coded, step);
+      roughness_[v] = std::max(std::abs(height - prediction), 0.3 * step) / side;
       lately_.add(roughness_[v]);
-      settle_height(v, prediction + coded * step);
+      settle_height(v, height);
     }
   }
 
@@ -223,15 +240,16 @@ void Values::gradients(const Context& context) {
       const int size = 8 + log2_class(expected, 2), half = std::clamp(size / 2, 0, 15) * 4;
       const int crowd = std::clamp(4 + log2_class(star_[v] / mean_star, 1), 0, 9);
       const Vec2 target = source_ ? source_->gradient(v) : Vec2{};
-      const int wanted_x = source_ ? rounded(target.x, data[k][1], step) : 0;
-      const int wanted_y = source_ ? rounded(target.y, data[k][2], step) : 0;
-      const int x = slopes_x_.code(coder_, wanted_x, size, static_cast<int>(std::min<std::size_t>(group, 5)) * 10 + crowd,
-                                   half + std::min(3, near_count), 0);
-      const int y = slopes_y_.code(coder_, wanted_y, size, std::min(std::abs(x), 5) * 10 + crowd,
-                                   half + std::min(3, std::abs(x)), x == 0 ? 0 : x > 0 ? 1 : 2);
-      data[k][1] += x * step;
-      data[k][2] += y * step;
-      missed[v] = std::max(0.3 * step, (std::abs(x * step) + std::abs(y * step)) / 2);
+      const Guess guess_x(data[k][1], step), guess_y(data[k][2], step);
+      const int x = slopes_x_.code(coder_, source_ ? guess_x.towards(target.x, step) : 0, size,
+                                   static_cast<int>(std::min<std::size_t>(group, 5)) * 10 + crowd,
+                                   half + guess_x.shade, guess_x.shade);
+      const int y = slopes_y_.code(coder_, source_ ? guess_y.towards(target.y, step) : 0, size,
+                                   std::min(std::abs(x), 5) * 10 + crowd, half + guess_y.shade, guess_y.shade);
+      const double gx = guess_x.value(x, step), gy = guess_y.value(y, step);
+      missed[v] = std::max(0.3 * step, (std::abs(gx - data[k][1]) + std::abs(gy - data[k][2])) / 2);
+      data[k][1] = gx;
+      data[k][2] = gy;
       ratio.add(missed[v] / std::max(rough, 1e-9));
       held[k] = 1;
       if (source_) source_->coded_gradient(v, {data[k][1], data[k][2]});
@@ -241,6 +259,22 @@ void Values::gradients(const Context& context) {
 }
 
 }  // namespace
+
+double LatticeSteps::nearest(double value, double step) {
+  return std::floor(value / step + 0.5) * step;
+}
+
+LatticeSteps lattice_steps(const CellTriangulation& finest, const CompactSteps& steps) {
+  LatticeSteps result;
+  for (const double star : stars_of(finest)) {
+    const int octaves = log2_class(star, 4);  // in quarters: a small change of the star leaves the step as it is
+    const int height = -octaves * steps.crowding;  // in quarters of sixteenths
+    const double step = steps.height * eighth_octaves(height >= 0 ? (height + 4) / 8 : -((4 - height) / 8));
+    result.height.push_back(step);
+    result.slope.push_back(steps.slope * 0.25 * step * eighth_octaves(-octaves));
+  }
+  return result;
+}
 
 std::vector<VertexJet> code_values(BitCoder& coder, const CompactFrame& frame, const CompactSteps& steps,
                                    bool gradients, ValueSource* source, const Context& context) {

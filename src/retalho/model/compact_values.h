@@ -15,9 +15,9 @@ namespace retalho {
 
 /// How finely the numbers of a compact model are kept.
 struct CompactSteps {
-  double height = 1;           ///< of a vertex whose star is of mean size, > 0
-  std::uint8_t crowding = 6;   ///< eighths: vertices in small stars get (mean star / star)^(crowding / 16) coarser steps
-  std::uint8_t slope = 16;     ///< quarters: a gradient's step times the root of its star, in steps of its height
+  double height = 1;          ///< of a vertex that stands for one cell, > 0
+  std::uint8_t crowding = 6;  ///< one that stands for n cells (a third of its triangles) has n^-(crowding / 16) of it
+  std::uint8_t slope = 16;    ///< quarters: a gradient's step times the root of n, in steps of its height
 };
 
 /// Where the writer's numbers come from. The numbers that have been coded are told to it, so that it may make the best
@@ -40,6 +40,14 @@ struct CompactFrame {
   Vec2 step;                            ///< of a cell, step.x * step.y = 1
   double reference = 0;                 ///< about the mean height
 };
+
+/// The steps of every vertex's height and gradient: they follow from the positions.
+struct LatticeSteps {
+  std::vector<double> height, slope;
+  /// On its lattice, the number next to this one.
+  static double nearest(double value, double step);
+};
+LatticeSteps lattice_steps(const CellTriangulation& finest, const CompactSteps& steps);
 
 /// Codes heights (and gradients) of all vertices, by their place among the cells. `source` when writing, null when
 /// reading. Gradients: height units per side of a cell. Returns exactly what a reader of the same bits gets.

@@ -7,6 +7,7 @@
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
+#include "retalho/model/compact_file.h"
 #include "retalho/model/envelope.h"
 #include "retalho/model/model_codec.h"
 #include "retalho/model/tiled.h"
@@ -19,10 +20,15 @@ std::string encode_model(const Model& model) {
 
 Model decode_model(std::string_view bytes, const std::string& file, ModelFileNotes* notes) {
   try {
+    if (has_compact_signature(bytes)) {
+      Terrain terrain = decode_compact(bytes);
+      if (notes) *notes = {kCompactVersion, 0, true, {}, bytes.size()};
+      return terrain;
+    }
     const Envelope envelope = unseal(bytes);
     std::string created_by;
     Model model = decode_content(envelope.content, &created_by);
-    if (notes) *notes = {envelope.major, envelope.minor, created_by, bytes.size()};
+    if (notes) *notes = {envelope.major, envelope.minor, false, created_by, bytes.size()};
     return model;
   } catch (const CannotRead& e) {
     throw CannotRead(file.empty() ? fmt::format("cannot read the model: {}", e.what())
@@ -48,7 +54,8 @@ bool is_model_file(const std::string& path) {
   if (is_tiled_model(path)) return true;
   std::ifstream in(path, std::ios::binary);
   char start[8];
-  return in.read(start, sizeof start) && has_signature({start, sizeof start});
+  return in.read(start, sizeof start) &&
+         (has_signature({start, sizeof start}) || has_compact_signature({start, sizeof start}));
 }
 
 }  // namespace retalho

@@ -18,7 +18,8 @@ using Model = std::variant<Terrain, TetraQuad, PatchSet>;
 /// What a file says of itself.
 struct ModelFileNotes {
   int format_major = 0, format_minor = 0;
-  std::string created_by;  ///< "retalho 0.1.0"
+  bool compact = false;    ///< the compact form (compact.h), whose versions are numbered for themselves
+  std::string created_by;  ///< "retalho 0.1.0"; the compact form does not say
   std::size_t bytes = 0;
 };
 
@@ -27,7 +28,7 @@ struct ModelFileNotes {
 /// Cost: about 2 us a vertex.
 std::string encode_model(const Model& model);
 
-/// The model, equal to the one encoded to the last bit. Throws CannotRead for anything that encode_model did not write:
+/// The model, equal to the one encoded to the last bit; of either form. Throws CannotRead for anything that encode_model did not write:
 /// every proper prefix and every changed byte is refused, before anything is interpreted; content that got past the
 /// checksum is verified as a FlatBuffer, and then as a model (indices, orientation, finite numbers, array lengths).
 /// `file` is its name in messages. Never allocates more than the bytes can stand for. Cost: about 1 us a vertex.

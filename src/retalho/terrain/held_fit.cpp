@@ -56,6 +56,29 @@ Vec2 HeldFit::gradient(std::uint32_t vertex) const {
   return {u.y, u.z};
 }
 
+void HeldFit::set(std::uint32_t vertex, double height, Vec2 gradient) {
+  parts_->state.data[parts_->triangulation.number[vertex]] = {height - parts_->state.grid.reference, gradient.x,
+                                                              gradient.y};
+}
+
+double HeldFit::excess(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const {
+  const FitState& s = parts_->state;
+  const std::uint32_t me = parts_->triangulation.number[vertex];
+  CellMesh::Star star;
+  s.mesh.star(me, star);
+  double sum = 0;
+  for (const std::uint32_t t : star.triangles) {
+    CornerData corners = s.corner_data(t);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (s.mesh.triangles()[t][k] == me) corners[k] = {height - s.grid.reference, gradient.x, gradient.y};
+    each_error(s.kind, s.triangle(t), corners, s.grid, s.weights.inside, [&](std::size_t, double error) {
+      const double over = std::abs(error) / tolerance - 1;
+      if (over > 0) sum += over * over;
+    });
+  }
+  return sum;
+}
+
 void HeldFit::hold_height(std::uint32_t vertex, double height) {
   const std::uint32_t v = parts_->triangulation.number[vertex];
   parts_->state.data[v].x = height - parts_->state.grid.reference;
@@ -71,6 +94,10 @@ void HeldFit::hold_gradient(std::uint32_t vertex, Vec2 gradient) {
 
 void HeldFit::release() {
   std::fill(parts_->state.pinned.begin(), parts_->state.pinned.end(), std::uint8_t{0});
+}
+
+void HeldFit::release(std::uint32_t vertex) {
+  parts_->state.pinned[parts_->triangulation.number[vertex]] = 0;
 }
 
 void HeldFit::solve(double tolerance, int iterations) {
@@ -103,6 +130,34 @@ std::vector<double> HeldFit::errors() const {
     }
   });
   return result;
+}
+
+std::vector<std::uint32_t> HeldFit::neighbors(std::uint32_t vertex) const {
+  CellMesh::Star star;
+  parts_->state.mesh.star(parts_->triangulation.number[vertex], star);
+  for (std::uint32_t& v : star.ring) v = parts_->triangulation.vertex[v];
+  return star.ring;
+}
+
+std::vector<std::uint32_t> HeldFit::vertices_over(double tolerance) const {
+  const FitState& s = parts_->state;
+  std::vector<std::uint8_t> over(s.mesh.triangle_count(), 0);
+  parallel_chunks(over.size(), 64, parts_->context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto t = static_cast<std::uint32_t>(k);
+      each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside,
+                 [&](std::size_t, double error) {
+                   if (std::abs(error) > tolerance) over[k] = 1;
+                 });
+    }
+  });
+  std::vector<std::uint32_t> list;
+  for (std::size_t t = 0; t < over.size(); ++t)
+    if (over[t] != 0)
+      for (const std::uint32_t v : s.mesh.triangles()[t]) list.push_back(parts_->triangulation.vertex[v]);
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
 }
 
 std::vector<greedy::Cell> HeldFit::worst_cells(double tolerance) const {

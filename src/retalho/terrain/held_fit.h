@@ -37,11 +37,13 @@ class HeldFit {
   double height(std::uint32_t vertex) const;
   Vec2 gradient(std::uint32_t vertex) const;
 
+  void set(std::uint32_t vertex, double height, Vec2 gradient);
   /// From now on the number is this one.
   void hold_height(std::uint32_t vertex, double height);
   void hold_gradient(std::uint32_t vertex, Vec2 gradient);
-  /// Nothing is held any more; numbers stay where they are.
+  /// Nothing (of this vertex) is held any more; numbers stay where they are.
   void release();
+  void release(std::uint32_t vertex);
 
   /// Solves for all that is not held, from where it is, until the residual has fallen by `tolerance`.
   void solve(double tolerance, int iterations = 1000);
@@ -54,6 +56,13 @@ class HeldFit {
 
   /// Surface minus height at every cell; NaN where it is void.
   std::vector<double> errors() const;
+  /// The sum of (|S - z| / tolerance - 1)^2 over the cells of the vertex's triangles that are over `tolerance`, if the
+  /// vertex had these numbers. Not for heights_only.
+  double excess(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const;
+  /// Vertices of the triangles with an error over `tolerance`, ascending.
+  std::vector<std::uint32_t> vertices_over(double tolerance) const;
+  /// Neighbours of a vertex.
+  std::vector<std::uint32_t> neighbors(std::uint32_t vertex) const;
   /// Of each triangle of the triangulation with an error over `tolerance`: the cell with the largest, if it is no
   /// vertex; no two of triangles that touch, the largest errors first.
   std::vector<greedy::Cell> worst_cells(double tolerance) const;
