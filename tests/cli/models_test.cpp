@@ -254,5 +254,41 @@ TEST(Models, RenderDrawsGridsAndModelsSideBySide) {
   EXPECT_EQ(run(folder, "render m.retalho -o q.png --size 0x10").code, 2);
 }
 
+TEST(Models, TheCompactFormIsAModelForEveryCommand) {
+  const Folder folder;
+  const auto fit = run(folder, "fit dem.asc -o c.retalho --max-error 2 --format compact --surface auto --json");
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_EQ(fit.json()["violations"], 0);
+  EXPECT_LE(fit.json()["max_error"].get<double>(), 2.0);
+  EXPECT_EQ(fit.json()["bytes"].get<std::size_t>(), bytes_of(folder / "c.retalho").size());
+  ASSERT_EQ(run(folder, "fit dem.asc -o e.retalho --max-error 2 --refine surface").code, 0);
+  EXPECT_LT(10 * bytes_of(folder / "c.retalho").size(), 6 * bytes_of(folder / "e.retalho").size());
+  const auto compared = run(folder, "compare dem.asc c.retalho --json").json()["models"][0];
+  for (const char* key : {"rmse", "max_error", "bytes", "vertices", "slope_rmse"}) EXPECT_EQ(compared[key], fit.json()[key]);
+  EXPECT_EQ(run(folder, "info c.retalho --json").json()["vertices"], fit.json()["vertices"]);
+  EXPECT_EQ(run(folder, "sample c.retalho -o s.tif").code, 0);
+  EXPECT_EQ(run(folder, "contour c.retalho -o l.geojson --interval 10").code, 0);
+  EXPECT_EQ(run(folder, "mesh c.retalho -o m.ply").code, 0);
+  EXPECT_EQ(run(folder, "render c.retalho -o r.png").code, 0);
+  ASSERT_EQ(run(folder, "fit dem.asc -o v.retalho --vertices 60 --format compact --fit z-only --json").code, 0);
+  EXPECT_EQ(run(folder, "info v.retalho --json").json()["vertices"], 60);
+}
+
+TEST(Models, TheCompactFormSaysWhatItDoesNotTake) {
+  const Folder folder;
+  folder.put("points.xyz", "0 0 1\n1 0 2\n0 1 3\n");
+  for (const std::string options :
+       {"dem.asc --max-error 2 --format small", "dem.asc --max-error 2 --format compact --surface powell-sabin",
+        "dem.asc --max-error 2 --surface auto", "dem.asc --vertices 60 --format compact --surface auto",
+        "dem.asc --max-error 2 --vertices 60 --format compact", "dem.asc --max-error 0 --format compact",
+        "dem.asc --max-error 2 --format compact --gradients normals", "points.xyz --format compact",
+        "dem.asc --max-error 2 --format compact --cross-derivative cubic",
+        "dem.asc --max-error 2 --format compact --fit z-only"}) {
+    const auto outcome = run(folder, "fit " + options + " -o n.retalho");
+    EXPECT_EQ(outcome.code, 2) << options << outcome.err;
+  }
+  EXPECT_EQ(folder.entries(), 2U);
+}
+
 }  // namespace
 }  // namespace retalho::test

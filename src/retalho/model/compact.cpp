@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "retalho/core/error.h"
@@ -21,6 +22,7 @@ namespace {
 using greedy::Cell;
 
 constexpr double kTight = 1e-6;  // of the fit's residual
+constexpr double kMostSteps = 1 << 26;  // over the range of the heights
 
 void check(const CompactOptions& o) {
   if (o.surface != SurfaceKind::linear && o.surface != SurfaceKind::clough_tocher)
@@ -107,14 +109,57 @@ CompactModel by_budget(const std::vector<Cell>& cells, const Raster& raster, con
   fit.solve(kTight);
   const double step = options.height_step > 0 ? options.height_step : kStep * rmse_of(fit.errors());
   const RasterSummary summary = summarize(raster);
-  const double least = 1e-9 * std::max(1.0, summary.maximum - summary.minimum);
+  const double range = summary.maximum - summary.minimum;
+  const double least = range > 0 ? range / kMostSteps : 1;
   set_steps(facts, std::max(step, least), summary.mean, cells.size());
   CompactEncoding encoding = encode(fit, facts, cells, context);
   return {std::move(encoding.bytes), std::move(encoding.terrain)};
 }
 
 
-double env(const char* n, double d) { const char* t = std::getenv(n); return t ? std::atof(t) : d; }
+
+/// Roundings that are tried, of which the smallest file counts: none is the best on every grid.
+struct Rounding {
+  double height;       // of the tolerance
+  std::uint8_t slope;  // as in CompactSteps
+};
+constexpr Rounding kSmooth[] = {{0.4, 20}, {0.5, 20}, {0.6, 15}}, kFlat[] = {{0.5, 20}, {0.65, 20}};
+
+CompactModel by_tolerance(const std::vector<Cell>& cells, const Raster& raster, const CompactOptions& options,
+                          const Context& context) {
+  const RasterSummary summary = summarize(raster);
+  if (options.max_error * kMostSteps < summary.maximum - summary.minimum)
+    throw BadInput(fmt::format("a largest error of {} is too small for heights from {} to {}: the compact form counts "
+                               "up to {} steps",
+                               options.max_error, summary.minimum, summary.maximum, kMostSteps),
+                   {}, "max_error");
+  CompactFrameFacts facts = facts_of(raster, options);
+  // Half a step must stay under the tolerance, for the smallest star too (half a cell).
+  const double mean_star = static_cast<double>(raster.cells()) / static_cast<double>(cells.size());
+  const auto coarsest = [&](double step, int crowding) { return step * std::pow(2 * mean_star, crowding / 16.0); };
+  CompactModel best;
+  const auto attempt = [&](double step, double margin) {
+    facts.steps.crowding = coarsest(step, 2) < 1.8 * options.max_error ? 2 : 0;
+    set_steps(facts, step, summary.mean, cells.size());
+    CompactEncoding made =
+        encode_within(options.max_error * (1 - margin), cells, raster, facts, fit_options(options), context);
+    if (assess(made.terrain, raster, options.max_error, context).violations > 0) return;
+    if (best.bytes.empty() || made.bytes.size() < best.bytes.size())
+      best = {std::move(made.bytes), std::move(made.terrain)};
+  };
+  const std::span<const Rounding> roundings = options.surface == SurfaceKind::linear ? std::span<const Rounding>(kFlat)
+                                                                                       : std::span<const Rounding>(kSmooth);
+  // The report's own scan judges; should it see an error that rounding hid here, the goal is tightened.
+  for (double margin = 1e-9; best.bytes.empty(); margin *= 100) {
+    if (margin > 0.1) throw Error(Error::Kind::internal, "the compact form does not reach its tolerance");
+    for (const Rounding& r : roundings) {
+      facts.steps.slope = r.slope;
+      if (options.height_step == 0) attempt(r.height * options.max_error, margin);
+    }
+    if (options.height_step > 0) attempt(std::min(options.height_step, options.max_error), margin);
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -126,22 +171,20 @@ CompactModel compact_terrain(const Terrain& terrain, const Raster& raster, const
 
 CompactModel fit_compact(const Raster& raster, const CompactOptions& options, const Context& context) {
   check(options);
-  if (options.max_error > 0) {
-    const Terrain terrain = refine_surface(raster, {.surface = options.heights_only ? SurfaceKind::linear : options.surface, .max_error = env("REF", 0.95) * options.max_error, .slope_weight = options.slope_weight}, context);
-    CompactFrameFacts facts = facts_of(raster, options);
-    facts.steps.crowding = static_cast<std::uint8_t>(env("CROWD", 2));
-    facts.steps.slope = static_cast<std::uint8_t>(env("SLOPE", 20));
-    const std::vector<Cell> cells = cells_of(terrain, raster);
-    set_steps(facts, options.height_step > 0 ? options.height_step : env("DZ", 0.4) * options.max_error, summarize(raster).mean, cells.size());
-    CompactEncoding e = encode_within(options.max_error, cells, raster, facts, fit_options(options), context);
-    return {std::move(e.bytes), std::move(e.terrain)};
-  }
+  if ((options.max_error > 0) == (options.vertices > 0))
+    throw UsageError("the compact form is refined to a largest error or to a number of vertices: give one of them");
+  if (options.heights_only && options.max_error > 0)
+    throw UsageError("heights alone are refined to a number of vertices, not to a largest error", {}, "max_error");
+  // Vertices of a surface whose gradients follow its heights: those of the flat one are the best that are known.
+  const SurfaceKind placed = options.heights_only ? SurfaceKind::linear : options.surface;
   const Terrain terrain = refine_surface(raster,
-                                         {.surface = options.heights_only ? SurfaceKind::linear : options.surface,
+                                         {.surface = placed,
+                                          .max_error = options.max_error,
                                           .vertices = options.vertices,
                                           .slope_weight = options.slope_weight},
                                          context);
-  return by_budget(cells_of(terrain, raster), raster, options, context);
+  return options.max_error > 0 ? by_tolerance(cells_of(terrain, raster), raster, options, context)
+                               : by_budget(cells_of(terrain, raster), raster, options, context);
 }
 
 }  // namespace retalho

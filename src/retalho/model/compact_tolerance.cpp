@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fmt/format.h>
 #include <map>
 
 #include "retalho/model/fit_source.h"
@@ -13,9 +11,14 @@ namespace {
 
 using greedy::Cell;
 
-double env(const char* n, double d) { const char* t = std::getenv(n); return t ? std::atof(t) : d; }
-
-constexpr double kTight = 1e-6, kLoose = 1e-3;  // of the fit's residual
+constexpr double kTight = 1e-6, kLoose = 1e-5;  // of the fit's residual
+constexpr double kGoal = 0.95;                  // of the tolerance: what is left for the rounding
+constexpr int kReweightings = 12;
+constexpr int kSweeps = 12;
+constexpr int kPatience = 6;  // rounds until vertices keep their cells' heights
+// A number shorter by a bit or two may cost as many squared errors as five such bits' share of all: measured, it makes
+// files 2 to 3 % smaller at the same RMSE and with truer slopes.
+constexpr double kThrift = 8;
 
 class Loop {
  public:
@@ -31,28 +34,26 @@ class Loop {
         fit_(raster, cells_, options, context) {}
 
   CompactEncoding run() {
-    const double goal = env("GOAL", 0.95) * tolerance_;
     fit_.solve(kTight);
-    for (int k = 0; k < env("LAWSON", 12) && fit_.reweigh(goal); ++k) fit_.solve(kLoose, 60);
+    for (int k = 0; k < kReweightings && fit_.reweigh(kGoal * tolerance_); ++k) fit_.solve(kLoose, 60);
     weights_ = fit_.cell_weights();
     FitSource source(fit_);
-    CompactEncoding encoding = encode_compact(facts_, cells_, source, context_);
+    const CompactEncoding first = encode_compact(facts_, cells_, source, context_);
     measure_steps();
-    bool changed = false;
     for (int round = 0;; ++round) {
-      std::vector<std::uint32_t> over = fit_.vertices_over(tolerance_);
-      if (std::getenv("V")) fmt::print(stderr, "round {} V={} bytes={} over={}", round, cells_.size(), encoding.bytes.size(), over.size());
+      context_.check();
+      const std::vector<std::uint32_t> over = fit_.vertices_over(tolerance_);
+      context_.report("round", 1.0 / (1.0 + static_cast<double>(over.size())));
       if (over.empty()) break;
-      changed = true;
       descend(over);
-      over = fit_.vertices_over(tolerance_);
-      if (std::getenv("V")) fmt::print(stderr, " after {}\n", over.size());
-      if (over.empty()) break;
-      add_vertices(round >= 6);
+      if (fit_.vertices_over(tolerance_).empty()) break;
+      add_vertices(round >= kPatience);
     }
-    if (!changed) return encoding;
-    SettledSource settled(fit_);
-    return encode_compact(facts_, cells_, settled, context_);
+    double squares = 0;
+    for (const double e : fit_.errors())
+      if (!std::isnan(e)) squares += (e / tolerance_) * (e / tolerance_);
+    ThriftySource thrifty(fit_, tolerance_, kThrift * squares / (8.0 * static_cast<double>(first.bytes.size())));
+    return encode_compact(facts_, cells_, thrifty, context_);
   }
 
  private:
@@ -65,9 +66,9 @@ class Loop {
   }
   void measure_steps() { steps_ = lattice_steps(triangulate_cells(cells_), facts_.steps); }
 
-  /// Sweeps over these vertices: each takes the neighbouring place on its lattices where the excess around it is least.
+  /// Sweeps over these vertices: each takes the neighbouring places on its lattices where the excess around it is least.
   void descend(const std::vector<std::uint32_t>& list) {
-    for (int sweep = 0; sweep < 12; ++sweep) {
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
       bool moved = false;
       for (const std::uint32_t v : list) moved |= improve(v);
       if (!moved) return;
@@ -77,7 +78,7 @@ class Loop {
   bool improve(std::uint32_t v) {
     double height = fit_.height(v);
     Vec2 gradient = fit_.gradient(v);
-    double best = fit_.excess(v, height, gradient, tolerance_);
+    double best = fit_.star_errors(v, height, gradient, tolerance_).excess;
     if (best == 0) return false;
     bool moved = false;
     const double h = steps_.height[v], g = steps_.slope[v];
@@ -86,18 +87,20 @@ class Loop {
       double least = best * (1 - 1e-9), to_height = height;
       Vec2 to_gradient = gradient;
       const auto attempt = [&](double z, Vec2 slope) {
-        const double cost = fit_.excess(v, z, slope, tolerance_);
+        const double cost = fit_.star_errors(v, z, slope, tolerance_).excess;
         if (cost >= least) return;
         least = cost;
         to_height = z;
         to_gradient = slope;
       };
-      for (const int k : {-1, 1, -2, 2}) {
-        if (!pinned) attempt(on_lattice(height + k * h, h), gradient);
-        if (!gradients_) continue;
-        attempt(height, {LatticeSteps::nearest(gradient.x + k * g, g), gradient.y});
-        attempt(height, {gradient.x, LatticeSteps::nearest(gradient.y + k * g, g)});
-      }
+      const int far = pinned ? 0 : 1, wide = gradients_ ? 1 : 0;
+      for (int a = -far; a <= far; ++a)
+        for (int b = -wide; b <= wide; ++b)
+          for (int c = -wide; c <= wide; ++c)
+            if (a != 0 || b != 0 || c != 0)
+              attempt(a == 0 ? height : on_lattice(height + a * h, h),
+                      {b == 0 ? gradient.x : LatticeSteps::nearest(gradient.x + b * g, g),
+                       c == 0 ? gradient.y : LatticeSteps::nearest(gradient.y + c * g, g)});
       if (!(least < best * (1 - 1e-9))) break;
       best = least;
       height = to_height;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retalho/core/error.h"
+
 namespace retalho {
 namespace {
 
@@ -20,6 +22,12 @@ double eighth_octaves(int k) {
                                       1.8340080864093424};
   const int whole = k >= 0 ? k / 8 : -((7 - k) / 8);
   return std::ldexp(kRoot[k - 8 * whole], whole);
+}
+
+int whole(double steps) {
+  if (!(std::abs(steps) <= kLargest))
+    throw BadInput("this terrain has no compact form: a number lies more than 2^29 steps from where it is expected");
+  return static_cast<int>(steps);
 }
 
 /// The mean of what has been seen lately.
@@ -98,19 +106,25 @@ class Values {
     }
     /// Steps from the base to the target, counted towards the prediction's side.
     int towards(double target, double step) const {
-      const double q = std::floor(target / step + 0.5) - base, limit = kLargest;
-      return static_cast<int>(std::clamp(below ? -q : q, -limit, limit));
+      return whole(below ? base - std::floor(target / step + 0.5) : std::floor(target / step + 0.5) - base);
     }
     double value(int q, double step) const { return (base + (below ? -q : q)) * step; }
   };
 
+  /// The smallest number on the way from 0 to `q` that will do.
+  template <class Accepts>
+  static int nearer(int q, const Accepts& accepts) {
+    constexpr int kTries = 6;
+    for (int k = 0; k < std::min(std::abs(q), kTries); ++k)
+      if (accepts(q < 0 ? -k : k)) return q < 0 ? -k : k;
+    return q;
+  }
+
   void coarsest() {
     if (source_) source_->settle();
     for (const std::uint32_t v : frame_.levels.front().fresh) {
-      const double limit = kLargest;
-      const int q = source_ ? static_cast<int>(std::clamp(
-                                  std::floor((source_->height(v) - frame_.reference) / height_step_[v] + 0.5), -limit, limit))
-                            : 0;
+      const int q =
+          source_ ? whole(std::floor((source_->height(v) - frame_.reference) / height_step_[v] + 0.5)) : 0;
       const std::uint32_t size = coder_.code_gamma(static_cast<std::uint32_t>(std::abs(q)) + 1) - 1;
       const bool negative = size != 0 && coder_.code_even(q < 0);
       const double magnitude = size * height_step_[v];
@@ -167,7 +181,8 @@ class Values {
       const int size = 8 + log2_class(rough * side / step, 2);
       const int length = std::clamp(4 + log2_class(side / mean_side, 2), 0, 9);
       const Guess guess(prediction - frame_.reference, step);
-      const int q = source_ ? guess.towards(source_->height(v) - frame_.reference, step) : 0;
+      int q = source_ ? guess.towards(source_->height(v) - frame_.reference, step) : 0;
+      q = nearer(q, [&](int k) { return source_->accepts_height(v, frame_.reference + guess.value(k, step)); });
       const int coded = heights_.code(coder_, q, size, age * 10 + length, std::clamp(size / 2, 0, 15) * 4 + guess.shade,
                                       guess.shade);
       const double height = frame_.reference + guess.value(coded, step);
@@ -241,10 +256,18 @@ void Values::gradients(const Context& context) {
       const int crowd = std::clamp(4 + log2_class(star_[v] / mean_star, 1), 0, 9);
       const Vec2 target = source_ ? source_->gradient(v) : Vec2{};
       const Guess guess_x(data[k][1], step), guess_y(data[k][2], step);
-      const int x = slopes_x_.code(coder_, source_ ? guess_x.towards(target.x, step) : 0, size,
+      int wanted_x = 0, wanted_y = 0;
+      if (source_) {
+        wanted_x = guess_x.towards(target.x, step);
+        wanted_y = guess_y.towards(target.y, step);
+        const auto jet = [&](int i, int j) { return Vec2{guess_x.value(i, step), guess_y.value(j, step)}; };
+        wanted_x = nearer(wanted_x, [&](int i) { return source_->accepts_gradient(v, jet(i, wanted_y)); });
+        wanted_y = nearer(wanted_y, [&](int j) { return source_->accepts_gradient(v, jet(wanted_x, j)); });
+      }
+      const int x = slopes_x_.code(coder_, wanted_x, size,
                                    static_cast<int>(std::min<std::size_t>(group, 5)) * 10 + crowd,
                                    half + guess_x.shade, guess_x.shade);
-      const int y = slopes_y_.code(coder_, source_ ? guess_y.towards(target.y, step) : 0, size,
+      const int y = slopes_y_.code(coder_, wanted_y, size,
                                    std::min(std::abs(x), 5) * 10 + crowd, half + guess_y.shade, guess_y.shade);
       const double gx = guess_x.value(x, step), gy = guess_y.value(y, step);
       missed[v] = std::max(0.3 * step, (std::abs(gx - data[k][1]) + std::abs(gy - data[k][2])) / 2);

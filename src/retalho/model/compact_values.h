@@ -29,6 +29,9 @@ class ValueSource {
   virtual void settle() = 0;
   virtual double height(std::uint32_t vertex) = 0;
   virtual Vec2 gradient(std::uint32_t vertex) = 0;
+  /// May the number be this one instead, which takes fewer bits?
+  virtual bool accepts_height(std::uint32_t, double) { return false; }
+  virtual bool accepts_gradient(std::uint32_t, Vec2) { return false; }
   virtual void coded_height(std::uint32_t vertex, double height) = 0;
   virtual void coded_gradient(std::uint32_t vertex, Vec2 gradient) = 0;
 };

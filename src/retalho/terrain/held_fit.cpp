@@ -61,19 +61,21 @@ void HeldFit::set(std::uint32_t vertex, double height, Vec2 gradient) {
                                                               gradient.y};
 }
 
-double HeldFit::excess(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const {
+HeldFit::StarErrors HeldFit::star_errors(std::uint32_t vertex, double height, Vec2 gradient,
+                                          double tolerance) const {
   const FitState& s = parts_->state;
   const std::uint32_t me = parts_->triangulation.number[vertex];
   CellMesh::Star star;
   s.mesh.star(me, star);
-  double sum = 0;
+  StarErrors sum;
   for (const std::uint32_t t : star.triangles) {
     CornerData corners = s.corner_data(t);
     for (std::size_t k = 0; k < 3; ++k)
       if (s.mesh.triangles()[t][k] == me) corners[k] = {height - s.grid.reference, gradient.x, gradient.y};
     each_error(s.kind, s.triangle(t), corners, s.grid, s.weights.inside, [&](std::size_t, double error) {
-      const double over = std::abs(error) / tolerance - 1;
-      if (over > 0) sum += over * over;
+      const double relative = std::abs(error) / tolerance;
+      sum.squares += relative * relative;
+      if (relative > 1) sum.excess += (relative - 1) * (relative - 1);
     });
   }
   return sum;

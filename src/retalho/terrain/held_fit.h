@@ -56,9 +56,13 @@ class HeldFit {
 
   /// Surface minus height at every cell; NaN where it is void.
   std::vector<double> errors() const;
-  /// The sum of (|S - z| / tolerance - 1)^2 over the cells of the vertex's triangles that are over `tolerance`, if the
-  /// vertex had these numbers. Not for heights_only.
-  double excess(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const;
+  /// Of the cells of a vertex's triangles, in units of the tolerance.
+  struct StarErrors {
+    double excess = 0;   ///< sum of (|S - z| - 1)^2 over the cells that are over it
+    double squares = 0;  ///< sum of (S - z)^2
+  };
+  /// If the vertex had these numbers. Not for heights_only.
+  StarErrors star_errors(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const;
   /// Vertices of the triangles with an error over `tolerance`, ascending.
   std::vector<std::uint32_t> vertices_over(double tolerance) const;
   /// Neighbours of a vertex.
