@@ -65,7 +65,10 @@ Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t val
 }
 
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
-  command.add_option("--surface", flags.surface, "linear, powell-sabin or clough-tocher (default); with --format compact also auto: the smallest file")->type_name("KIND");
+  command
+      .add_option("--surface", flags.surface,
+                  "linear, powell-sabin or clough-tocher (default); with --format compact also auto: the smallest file")
+      ->type_name("KIND");
   command
       .add_option("--gradients", flags.gradients,
                   "At vertices: normals (default for grids), quadratic (default for points) or network")
@@ -105,11 +108,11 @@ std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from
   };
   if (from_points) refuse("takes grids: its vertices are their cells", "--format");
   if (!flags.gradients.empty()) refuse("fits the gradients: leave --gradients out", "--gradients");
-  if (flags.cross_derivative != kCrossDerivatives[0]) refuse("takes --cross-derivative perpendicular", "--cross-derivative");
+  if (flags.cross_derivative != kCrossDerivatives[0])
+    refuse("takes --cross-derivative perpendicular", "--cross-derivative");
   choose("--refine", flags.refine, kRefinements);
   const bool z_only = choose("--fit", flags.fit, kFits) == 2;
-  if (flags.surface == kAuto)
-    return {{.surface = SurfaceKind::clough_tocher}, {.surface = SurfaceKind::linear}};
+  if (flags.surface == kAuto) return {{.surface = SurfaceKind::clough_tocher}, {.surface = SurfaceKind::linear}};
   const auto kind = static_cast<SurfaceKind>(choose("--surface", flags.surface, kSurfaces) + 1);
   if (kind == SurfaceKind::powell_sabin) refuse("holds linear and clough-tocher surfaces", "--surface");
   if (z_only && kind == SurfaceKind::linear) refuse("--fit z-only is for clough-tocher", "--fit");

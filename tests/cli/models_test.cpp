@@ -264,7 +264,8 @@ TEST(Models, TheCompactFormIsAModelForEveryCommand) {
   ASSERT_EQ(run(folder, "fit dem.asc -o e.retalho --max-error 2 --refine surface").code, 0);
   EXPECT_LT(10 * bytes_of(folder / "c.retalho").size(), 6 * bytes_of(folder / "e.retalho").size());
   const auto compared = run(folder, "compare dem.asc c.retalho --json").json()["models"][0];
-  for (const char* key : {"rmse", "max_error", "bytes", "vertices", "slope_rmse"}) EXPECT_EQ(compared[key], fit.json()[key]);
+  for (const char* key : {"rmse", "max_error", "bytes", "vertices", "slope_rmse"})
+    EXPECT_EQ(compared[key], fit.json()[key]);
   EXPECT_EQ(run(folder, "info c.retalho --json").json()["vertices"], fit.json()["vertices"]);
   EXPECT_EQ(run(folder, "sample c.retalho -o s.tif").code, 0);
   EXPECT_EQ(run(folder, "contour c.retalho -o l.geojson --interval 10").code, 0);

@@ -79,7 +79,8 @@ Sample sample(SurfaceKind kind, bool heights_only, bool masked) {
   s.facts.tolerance = 0.5;
   s.facts.reference = 530;
   s.facts.steps.height = 0.4;
-  s.cells = {cell_at(0, 0), cell_at(13, 0), cell_at(5, 3), cell_at(9, 4), cell_at(6, 7), cell_at(0, 10), cell_at(13, 10)};
+  s.cells = {cell_at(0, 0), cell_at(13, 0), cell_at(5, 3),  cell_at(9, 4),
+             cell_at(6, 7), cell_at(0, 10), cell_at(13, 10)};
   std::sort(s.cells.begin(), s.cells.end());
   return s;
 }
@@ -221,7 +222,8 @@ TEST(CompactFile, SaysWhatItCannotHold) {
 Raster hills(int columns, int rows, bool voids) {
   return test::make_grid(columns, rows, [&](int x, int y) {
     if (voids && (x - 30) * (x - 30) + (y - 20) * (y - 20) < 50) return std::nan("");
-    return 300 + 40 * std::sin(x / 9.0) * std::cos(y / 7.0) + 15 * std::sin(x * 0.31 + y * 0.17) + (x > 50 ? 25.0 : 0.0);
+    return 300 + 40 * std::sin(x / 9.0) * std::cos(y / 7.0) + 15 * std::sin(x * 0.31 + y * 0.17) +
+           (x > 50 ? 25.0 : 0.0);
   });
 }
 
@@ -270,7 +272,8 @@ TEST(CompactFit, TheFitMakesUpForTheRounding) {
     fit.solve(1e-6);
     FitSource with(fit);
     OpenLoop without(fit);
-    return assess(encode_compact(facts, cells, closed ? static_cast<ValueSource&>(with) : without).terrain, raster).rmse;
+    return assess(encode_compact(facts, cells, closed ? static_cast<ValueSource&>(with) : without).terrain, raster)
+        .rmse;
   };
   EXPECT_LT(rmse(true), 0.97 * rmse(false));
 }

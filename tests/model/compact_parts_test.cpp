@@ -82,7 +82,8 @@ RC_GTEST_PROP(CompactPartsProperty, WholeNumbersComeBack, ()) {
 TEST(CompactParts, RealsAreKeptToTheBitByFewBytes) {
   test::Random random;
   std::vector<double> values{0, 1, -1, 30, 0.1, 1e300, -1e-300, 5e-324, 1.7976931348623157e308, 0.0002777777777777778};
-  for (int k = 0; k < 5000; ++k) values.push_back(std::ldexp(random.uniform(-1, 1), static_cast<int>(random.index(2000)) - 1000));
+  for (int k = 0; k < 5000; ++k)
+    values.push_back(std::ldexp(random.uniform(-1, 1), static_cast<int>(random.index(2000)) - 1000));
   ByteWriter out;
   for (const double v : values) out.real(v);
   ByteReader in(out.bytes());
@@ -130,7 +131,8 @@ Triangles triangles_of(const CellMesh& mesh) {
 }
 
 RC_GTEST_PROP(CompactPartsProperty, LevelsHaveKnownNeighboursAndHoldAll, ()) {
-  const std::vector<Cell> cells = random_cells(*rc::gen::inRange(3, 30), *rc::gen::inRange(3, 30), *rc::gen::inRange(4, 150));
+  const std::vector<Cell> cells =
+      random_cells(*rc::gen::inRange(3, 30), *rc::gen::inRange(3, 30), *rc::gen::inRange(4, 150));
   RC_PRE(cells.size() >= 3 && !on_one_line(cells));
   const std::vector<CellLevel> levels = make_levels(cells);
   std::set<std::uint32_t> known;
@@ -162,7 +164,8 @@ RC_GTEST_PROP(CompactPartsProperty, TheTriangulationDependsOnTheSetAlone, ()) {
   for (const Cell c : order) {
     mesh.insert(c, 0);
     const Cell other = cell_at(*rc::gen::inRange(0, 7), *rc::gen::inRange(0, 7));
-    if (!std::binary_search(cells.begin(), cells.end(), other) && mesh.insert(other, 0) != kNone) passing.push_back(other);
+    if (!std::binary_search(cells.begin(), cells.end(), other) && mesh.insert(other, 0) != kNone)
+      passing.push_back(other);
   }
   for (const Cell c : passing) {
     const auto& all = mesh.cells();

@@ -22,9 +22,9 @@ double portable_exp(double x) {
   const double whole = std::floor(x * 1.4426950408889634 + 0.5);
   const double r = x - whole * 0.69314718055994531;  // |r| <= 0.35
   const double e =
-      1 + r * (1 + r * (1.0 / 2 +
-                        r * (1.0 / 6 +
-                             r * (1.0 / 24 + r * (1.0 / 120 + r * (1.0 / 720 + r * (1.0 / 5040 + r / 40320)))))));
+      1 +
+      r * (1 + r * (1.0 / 2 +
+                    r * (1.0 / 6 + r * (1.0 / 24 + r * (1.0 / 120 + r * (1.0 / 720 + r * (1.0 / 5040 + r / 40320)))))));
   return std::ldexp(e, static_cast<int>(whole));
 }
 

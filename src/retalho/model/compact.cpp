@@ -21,14 +21,14 @@ namespace {
 
 using greedy::Cell;
 
-constexpr double kTight = 1e-6;  // of the fit's residual
+constexpr double kTight = 1e-6;         // of the fit's residual
 constexpr double kMostSteps = 1 << 26;  // over the range of the heights
 
 void check(const CompactOptions& o) {
   if (o.surface != SurfaceKind::linear && o.surface != SurfaceKind::clough_tocher)
-    throw UsageError(fmt::format("the compact form holds linear and Clough-Tocher surfaces, not {}",
-                                 surface_name(o.surface)),
-                     {}, "surface");
+    throw UsageError(
+        fmt::format("the compact form holds linear and Clough-Tocher surfaces, not {}", surface_name(o.surface)), {},
+        "surface");
   if (o.heights_only && o.surface == SurfaceKind::linear)
     throw UsageError("a linear surface has heights only as it is", {}, "heights_only");
   if (!(o.max_error >= 0) || std::isinf(o.max_error))
@@ -116,8 +116,6 @@ CompactModel by_budget(const std::vector<Cell>& cells, const Raster& raster, con
   return {std::move(encoding.bytes), std::move(encoding.terrain)};
 }
 
-
-
 /// Roundings that are tried, of which the smallest file counts: none is the best on every grid.
 struct Rounding {
   double height;       // of the tolerance
@@ -147,8 +145,8 @@ CompactModel by_tolerance(const std::vector<Cell>& cells, const Raster& raster, 
     if (best.bytes.empty() || made.bytes.size() < best.bytes.size())
       best = {std::move(made.bytes), std::move(made.terrain)};
   };
-  const std::span<const Rounding> roundings = options.surface == SurfaceKind::linear ? std::span<const Rounding>(kFlat)
-                                                                                       : std::span<const Rounding>(kSmooth);
+  const std::span<const Rounding> roundings =
+      options.surface == SurfaceKind::linear ? std::span<const Rounding>(kFlat) : std::span<const Rounding>(kSmooth);
   // The report's own scan judges; should it see an error that rounding hid here, the goal is tightened.
   for (double margin = 1e-9; best.bytes.empty(); margin *= 100) {
     if (margin > 0.1) throw Error(Error::Kind::internal, "the compact form does not reach its tolerance");

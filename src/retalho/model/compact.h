@@ -14,11 +14,11 @@ namespace retalho {
 
 struct CompactOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;  ///< linear or clough_tocher
-  bool heights_only = false;     ///< clough_tocher whose gradients are the facets' means: a flat TIN's bytes
-  double max_error = 0;          ///< height units: every valid cell within it of the surface; 0: only the budget counts
-  std::size_t vertices = 0;      ///< the budget, 0: none. With a budget and max_error the error may be larger
-  double height_step = 0;        ///< 0: chosen, by max_error or else by the fit's own error
-  double slope_weight = 0;       ///< as in LeastSquaresOptions
+  bool heights_only = false;  ///< clough_tocher whose gradients are the facets' means: a flat TIN's bytes
+  double max_error = 0;       ///< height units: every valid cell within it of the surface; 0: only the budget counts
+  std::size_t vertices = 0;   ///< the budget, 0: none. With a budget and max_error the error may be larger
+  double height_step = 0;     ///< 0: chosen, by max_error or else by the fit's own error
+  double slope_weight = 0;    ///< as in LeastSquaresOptions
 };
 
 struct CompactModel {

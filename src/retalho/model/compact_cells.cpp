@@ -64,11 +64,11 @@ class Window {
   std::size_t place(int x) const { return static_cast<std::size_t>(x + kPad); }
 
   int columns_;
-  std::vector<std::vector<std::uint8_t>> rows_;    // [0]: the row in work
+  std::vector<std::vector<std::uint8_t>> rows_;  // [0]: the row in work
   // [d]: vertices in all rows over the one d rows above, it included, left of each column. Differences count.
   std::vector<std::vector<std::uint32_t>> sums_;
   std::vector<std::uint32_t> current_;
-  std::vector<int> last_seen_;                     // rows up to the nearest vertex of the column
+  std::vector<int> last_seen_;  // rows up to the nearest vertex of the column
 };
 
 int distance_class(int squared) {
@@ -104,8 +104,8 @@ struct VertexModel {
               n4 = w.above(x, -4, 4, 4) + w.before(x, 4), n6 = w.above(x, -6, 6, 6) + w.before(x, 6),
               n8 = w.above(x, -8, 8, 8) + w.before(x, 8), n16 = w.above(x, -16, 16, 16) + w.before(x, 16),
               n32 = w.above(x, -32, 32, 24) + w.before(x, 32), right = w.above(x, 1, 6, 5);
-    static constexpr int kPattern[12][2] = {{-1, 0},  {-2, 0},  {0, -1}, {1, -1},  {-1, -1}, {0, -2},
-                                            {2, -1},  {-2, -1}, {1, -2}, {-1, -2}, {-3, 0},  {0, -3}};
+    static constexpr int kPattern[12][2] = {{-1, 0}, {-2, 0},  {0, -1}, {1, -1},  {-1, -1}, {0, -2},
+                                            {2, -1}, {-2, -1}, {1, -2}, {-1, -2}, {-3, 0},  {0, -3}};
     std::size_t shape = 0;
     for (std::size_t k = 0; k < 12; ++k) shape |= std::size_t{w.at(kPattern[k][0], kPattern[k][1], x)} << k;
     const int d = distance_class(w.nearest(x, last));
@@ -157,7 +157,8 @@ Mask code_mask(BitCoder& coder, int columns, int rows, const Mask& mask) {
   const auto at = [&](int x, int y) {
     return x >= 0 && x < columns && y >= 0 && result.get(x, y) ? std::size_t{1} : std::size_t{0};
   };
-  static constexpr int kBefore[10][2] = {{-1, 0}, {-2, 0}, {-3, 0}, {-1, -1}, {0, -1}, {1, -1}, {2, -1}, {-2, -1}, {0, -2}, {1, -2}};
+  static constexpr int kBefore[10][2] = {{-1, 0}, {-2, 0}, {-3, 0},  {-1, -1}, {0, -1},
+                                         {1, -1}, {2, -1}, {-2, -1}, {0, -2},  {1, -2}};
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x) {
       std::size_t shape = 0;

@@ -108,8 +108,7 @@ std::string read_crs(ByteReader& in) {
 
 void write_header(ByteWriter& out, const CompactFrameFacts& f, std::size_t vertices) {
   out.byte(static_cast<std::uint8_t>(static_cast<unsigned>(f.kind) | (f.heights_only ? kHeightsOnly : 0U) |
-                                     (f.georef.geographic ? kGeographic : 0U) |
-                                     (f.grid.valid.empty() ? 0U : kMasked)));
+                                     (f.georef.geographic ? kGeographic : 0U) | (f.grid.valid.empty() ? 0U : kMasked)));
   out.varint(static_cast<std::uint64_t>(f.grid.columns));
   out.varint(static_cast<std::uint64_t>(f.grid.rows));
   out.varint(vertices);
@@ -130,14 +129,14 @@ CompactFrameFacts read_header(ByteReader& in, std::uint64_t& vertices) {
   f.georef.geographic = (kind & kGeographic) != 0;
   if (kind >= 32 || (f.kind != SurfaceKind::linear && f.kind != SurfaceKind::clough_tocher) ||
       (f.heights_only && f.kind == SurfaceKind::linear))
-    throw CannotRead(fmt::format("it holds a kind of surface ({}) that this Retalho does not know: update Retalho", kind),
-                     {}, "surface");
+    throw CannotRead(
+        fmt::format("it holds a kind of surface ({}) that this Retalho does not know: update Retalho", kind), {},
+        "surface");
   const std::uint64_t columns = in.varint("columns"), rows = in.varint("rows");
   vertices = in.varint("vertices");
   if (columns < 2 || rows < 2 || columns > 65535 || rows > 65535 || columns * rows > kMostCells)
     throw CannotRead(fmt::format("a grid of {} x {} cells", columns, rows), {}, "columns");
-  if (vertices < 3 || vertices > columns * rows ||
-      vertices > kVerticesAByte * in.rest().size() + kFreeVertices)
+  if (vertices < 3 || vertices > columns * rows || vertices > kVerticesAByte * in.rest().size() + kFreeVertices)
     throw CannotRead(fmt::format("{} vertices in {} bytes", vertices, in.rest().size()), {}, "vertices");
   f.grid.columns = static_cast<int>(columns);
   f.grid.rows = static_cast<int>(rows);

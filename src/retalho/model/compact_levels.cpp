@@ -40,7 +40,7 @@ std::vector<CellLevel> make_levels(std::span<const Cell> cells, const Context& c
     });
     const bool last = current.size() <= kCoarsest || order.empty();
     if (last) {
-      level.fresh = std::move(current);
+      level.fresh = current;
     } else {
       for (const std::uint32_t v : order) {
         const std::uint32_t k = level.number[v];

@@ -66,7 +66,8 @@ class Loop {
   }
   void measure_steps() { steps_ = lattice_steps(triangulate_cells(cells_), facts_.steps); }
 
-  /// Sweeps over these vertices: each takes the neighbouring places on its lattices where the excess around it is least.
+  /// Sweeps over these vertices: each takes the neighbouring places on its lattices where the excess around it is
+  /// least.
   void descend(const std::vector<std::uint32_t>& list) {
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       bool moved = false;
@@ -158,8 +159,8 @@ class Loop {
   void hold(std::uint32_t v, double height, Vec2 gradient) {
     fit_.hold_height(v, on_lattice(height, steps_.height[v]));
     if (!gradients_) return;
-    fit_.hold_gradient(v, {LatticeSteps::nearest(gradient.x, steps_.slope[v]),
-                           LatticeSteps::nearest(gradient.y, steps_.slope[v])});
+    fit_.hold_gradient(
+        v, {LatticeSteps::nearest(gradient.x, steps_.slope[v]), LatticeSteps::nearest(gradient.y, steps_.slope[v])});
   }
 
   double tolerance_;

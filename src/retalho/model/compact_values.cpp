@@ -123,8 +123,7 @@ class Values {
   void coarsest() {
     if (source_) source_->settle();
     for (const std::uint32_t v : frame_.levels.front().fresh) {
-      const int q =
-          source_ ? whole(std::floor((source_->height(v) - frame_.reference) / height_step_[v] + 0.5)) : 0;
+      const int q = source_ ? whole(std::floor((source_->height(v) - frame_.reference) / height_step_[v] + 0.5)) : 0;
       const std::uint32_t size = coder_.code_gamma(static_cast<std::uint32_t>(std::abs(q)) + 1) - 1;
       const bool negative = size != 0 && coder_.code_even(q < 0);
       const double magnitude = size * height_step_[v];
@@ -183,8 +182,8 @@ class Values {
       const Guess guess(prediction - frame_.reference, step);
       int q = source_ ? guess.towards(source_->height(v) - frame_.reference, step) : 0;
       q = nearer(q, [&](int k) { return source_->accepts_height(v, frame_.reference + guess.value(k, step)); });
-      const int coded = heights_.code(coder_, q, size, age * 10 + length, std::clamp(size / 2, 0, 15) * 4 + guess.shade,
-                                      guess.shade);
+      const int coded =
+          heights_.code(coder_, q, size, age * 10 + length, std::clamp(size / 2, 0, 15) * 4 + guess.shade, guess.shade);
       const double height = frame_.reference + guess.value(coded, step);
       roughness_[v] = std::max(std::abs(height - prediction), 0.3 * step) / side;
       lately_.add(roughness_[v]);
@@ -264,11 +263,11 @@ void Values::gradients(const Context& context) {
         wanted_x = nearer(wanted_x, [&](int i) { return source_->accepts_gradient(v, jet(i, wanted_y)); });
         wanted_y = nearer(wanted_y, [&](int j) { return source_->accepts_gradient(v, jet(wanted_x, j)); });
       }
-      const int x = slopes_x_.code(coder_, wanted_x, size,
-                                   static_cast<int>(std::min<std::size_t>(group, 5)) * 10 + crowd,
-                                   half + guess_x.shade, guess_x.shade);
-      const int y = slopes_y_.code(coder_, wanted_y, size,
-                                   std::min(std::abs(x), 5) * 10 + crowd, half + guess_y.shade, guess_y.shade);
+      const int x =
+          slopes_x_.code(coder_, wanted_x, size, static_cast<int>(std::min<std::size_t>(group, 5)) * 10 + crowd,
+                         half + guess_x.shade, guess_x.shade);
+      const int y = slopes_y_.code(coder_, wanted_y, size, std::min(std::abs(x), 5) * 10 + crowd, half + guess_y.shade,
+                                   guess_y.shade);
       const double gx = guess_x.value(x, step), gy = guess_y.value(y, step);
       missed[v] = std::max(0.3 * step, (std::abs(gx - data[k][1]) + std::abs(gy - data[k][2])) / 2);
       data[k][1] = gx;
@@ -290,7 +289,7 @@ double LatticeSteps::nearest(double value, double step) {
 LatticeSteps lattice_steps(const CellTriangulation& finest, const CompactSteps& steps) {
   LatticeSteps result;
   for (const double star : stars_of(finest)) {
-    const int octaves = log2_class(star, 4);  // in quarters: a small change of the star leaves the step as it is
+    const int octaves = log2_class(star, 4);       // in quarters: a small change of the star leaves the step as it is
     const int height = -octaves * steps.crowding;  // in quarters of sixteenths
     const double step = steps.height * eighth_octaves(height >= 0 ? (height + 4) / 8 : -((4 - height) / 8));
     result.height.push_back(step);

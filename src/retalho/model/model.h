@@ -28,10 +28,11 @@ struct ModelFileNotes {
 /// Cost: about 2 us a vertex.
 std::string encode_model(const Model& model);
 
-/// The model, equal to the one encoded to the last bit; of either form. Throws CannotRead for anything that encode_model did not write:
-/// every proper prefix and every changed byte is refused, before anything is interpreted; content that got past the
-/// checksum is verified as a FlatBuffer, and then as a model (indices, orientation, finite numbers, array lengths).
-/// `file` is its name in messages. Never allocates more than the bytes can stand for. Cost: about 1 us a vertex.
+/// The model, equal to the one encoded to the last bit; of either form. Throws CannotRead for anything that
+/// encode_model did not write: every proper prefix and every changed byte is refused, before anything is interpreted;
+/// content that got past the checksum is verified as a FlatBuffer, and then as a model (indices, orientation, finite
+/// numbers, array lengths). `file` is its name in messages. Never allocates more than the bytes can stand for. Cost:
+/// about 1 us a vertex.
 Model decode_model(std::string_view bytes, const std::string& file = {}, ModelFileNotes* notes = nullptr);
 
 /// Atomic. Throws as encode_model does, and CannotWrite.

@@ -24,8 +24,8 @@ Pieces pieces_of(const std::array<Vec2, 3>& v, const std::array<VertexJet, 3>& u
     second[k] = towards(j, v[i]);
     const double ex = v[j].x - v[i].x, ey = v[j].y - v[i].y;
     const double t = ((c.x - v[i].x) * ex + (c.y - v[i].y) * ey) / (ex * ex + ey * ey);
-    face[k] = (spoke[i] + spoke[j] + (t - 1) * u[i][0] + (2 - 3 * t) * first[k] + (3 * t - 1) * second[k] -
-               t * u[j][0]) / 2;
+    face[k] =
+        (spoke[i] + spoke[j] + (t - 1) * u[i][0] + (2 - 3 * t) * first[k] + (3 * t - 1) * second[k] - t * u[j][0]) / 2;
   }
   for (std::size_t i = 0; i < 3; ++i) inner[i] = (spoke[i] + face[(i + 1) % 3] + face[(i + 2) % 3]) / 3;
   const double centre = (inner[0] + inner[1] + inner[2]) / 3;
@@ -56,9 +56,8 @@ struct PieceFrame {
   }
   Second second(const Net& n) const {
     // The six ordinates of each corner's second differences: b + e_i + e_j for the corner's own index added once.
-    static constexpr int kOf[3][3][3] = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}},
-                                         {{1, 3, 4}, {3, 6, 7}, {4, 7, 8}},
-                                         {{2, 4, 5}, {4, 7, 8}, {5, 8, 9}}};
+    static constexpr int kOf[3][3][3] = {
+        {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, {{1, 3, 4}, {3, 6, 7}, {4, 7, 8}}, {{2, 4, 5}, {4, 7, 8}, {5, 8, 9}}};
     Second result{};
     for (std::size_t corner = 0; corner < 3; ++corner)
       for (std::size_t i = 0; i < 3; ++i)
@@ -114,8 +113,9 @@ double clough_tocher_height(const std::array<Vec2, 3>& v, const std::array<Verte
   const std::size_t k = at[2] < std::min(at[0], at[1]) ? 2 : at[1] < at[0] ? 1 : 0;
   const double r = at[(k + 1) % 3] - at[k], s = at[(k + 2) % 3] - at[k], t = 3 * at[k];
   const Net n = pieces_of(v, data)[k];
-  return n[0] * r * r * r + 3 * r * r * (n[1] * s + n[2] * t) + 3 * r * (n[3] * s * s + 2 * n[4] * s * t + n[5] * t * t) +
-         n[6] * s * s * s + 3 * s * t * (n[7] * s + n[8] * t) + n[9] * t * t * t;
+  return n[0] * r * r * r + 3 * r * r * (n[1] * s + n[2] * t) +
+         3 * r * (n[3] * s * s + 2 * n[4] * s * t + n[5] * t * t) + n[6] * s * s * s +
+         3 * s * t * (n[7] * s + n[8] * t) + n[9] * t * t * t;
 }
 
 void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std::vector<VertexJet>& data) {
@@ -139,7 +139,8 @@ void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std
   }
 }
 
-Bending::Bending(std::span<const Vec2> points, IndexTriangles triangles) : count_(points.size()), begin_(count_ + 1, 0) {
+Bending::Bending(std::span<const Vec2> points, IndexTriangles triangles)
+    : count_(points.size()), begin_(count_ + 1, 0) {
   std::vector<std::vector<std::uint32_t>> rows(count_);
   for (std::uint32_t v = 0; v < count_; ++v) rows[v].push_back(v);
   for (const auto& t : triangles)

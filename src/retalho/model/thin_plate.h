@@ -36,8 +36,8 @@ class Bending {
   void multiply(const std::vector<double>& x, std::vector<double>& y) const;
 
   std::size_t count_;
-  std::vector<std::uint32_t> begin_, vertex_;            // neighbours of each vertex, itself among them, ascending
-  std::vector<std::array<double, 9>> block_;             // second derivatives of the bending
+  std::vector<std::uint32_t> begin_, vertex_;  // neighbours of each vertex, itself among them, ascending
+  std::vector<std::array<double, 9>> block_;   // second derivatives of the bending
 };
 
 }  // namespace retalho

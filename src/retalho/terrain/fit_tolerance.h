@@ -12,8 +12,8 @@ inline constexpr CgLimits kRoughSolve{1e-5, 60}, kFinalSolve{1e-8, 1000};
 /// Sweeps of relocation, then exchanges each with a sweep.
 void better(FitState& state, int relocations, int exchanges, const Context& context);
 
-/// Lawson's weights: cells near the tolerance or over it count more. False, and nothing done to the elements, where none
-/// is over it.
+/// Lawson's weights: cells near the tolerance or over it count more. False, and nothing done to the elements, where
+/// none is over it.
 bool reweigh(FitState& state, double tolerance, const Context& context);
 
 struct ToleranceOptions {

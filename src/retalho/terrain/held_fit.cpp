@@ -61,8 +61,7 @@ void HeldFit::set(std::uint32_t vertex, double height, Vec2 gradient) {
                                                               gradient.y};
 }
 
-HeldFit::StarErrors HeldFit::star_errors(std::uint32_t vertex, double height, Vec2 gradient,
-                                          double tolerance) const {
+HeldFit::StarErrors HeldFit::star_errors(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const {
   const FitState& s = parts_->state;
   const std::uint32_t me = parts_->triangulation.number[vertex];
   CellMesh::Star star;
@@ -147,10 +146,9 @@ std::vector<std::uint32_t> HeldFit::vertices_over(double tolerance) const {
   parallel_chunks(over.size(), 64, parts_->context, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto t = static_cast<std::uint32_t>(k);
-      each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside,
-                 [&](std::size_t, double error) {
-                   if (std::abs(error) > tolerance) over[k] = 1;
-                 });
+      each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside, [&](std::size_t, double error) {
+        if (std::abs(error) > tolerance) over[k] = 1;
+      });
     }
   });
   std::vector<std::uint32_t> list;
@@ -174,15 +172,13 @@ std::vector<greedy::Cell> HeldFit::worst_cells(double tolerance) const {
     for (std::size_t k = begin; k < end; ++k) {
       const auto t = static_cast<std::uint32_t>(k);
       const auto& corners = s.mesh.triangles()[t];
-      each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside,
-                 [&](std::size_t at, double error) {
-                   if (!(std::abs(error) > std::max(tolerance, worst[k].error))) return;
-                   const greedy::Cell cell =
-                       greedy::cell_at(static_cast<int>(at % across), static_cast<int>(at / across));
-                   const bool is_vertex = std::any_of(corners.begin(), corners.end(),
-                                                      [&](std::uint32_t v) { return s.mesh.cell(v) == cell; });
-                   if (!is_vertex) worst[k] = {std::abs(error), cell};
-                 });
+      each_error(s.kind, s.triangle(t), s.corner_data(t), s.grid, s.weights.inside, [&](std::size_t at, double error) {
+        if (!(std::abs(error) > std::max(tolerance, worst[k].error))) return;
+        const greedy::Cell cell = greedy::cell_at(static_cast<int>(at % across), static_cast<int>(at / across));
+        const bool is_vertex =
+            std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return s.mesh.cell(v) == cell; });
+        if (!is_vertex) worst[k] = {std::abs(error), cell};
+      });
     }
   });
   std::vector<std::uint32_t> order;

@@ -33,8 +33,7 @@ std::vector<Cell> hull_of(const std::vector<Cell>& cells) {
 /// The bits of a cell's column and row in turns: cells near in this order are near.
 std::uint32_t interleaved(Cell c) {
   std::uint32_t result = 0;
-  for (std::uint32_t k = 0; k < 16; ++k)
-    result |= (c >> k & 1U) << (2 * k) | (c >> (16 + k) & 1U) << (2 * k + 1);
+  for (std::uint32_t k = 0; k < 16; ++k) result |= (c >> k & 1U) << (2 * k) | (c >> (16 + k) & 1U) << (2 * k + 1);
   return result;
 }
 
@@ -51,6 +50,7 @@ void sort_for_insertion(std::vector<std::uint32_t>& list, std::span<const Cell> 
 
 CellTriangulation triangulate_cells(std::span<const Cell> cells, std::vector<std::uint32_t> chosen) {
   std::vector<Cell> places;
+  places.reserve(chosen.size());
   for (const std::uint32_t v : chosen) places.push_back(cells[v]);
   const std::vector<Cell> hull = hull_of(places);
   CellTriangulation level{CellMesh(hull), {}, std::vector<std::uint32_t>(cells.size(), kNone)};

@@ -15,7 +15,7 @@ struct CellTriangulation {
   std::vector<std::uint32_t> number;  ///< the inverse; kNone: not chosen
 };
 
-/// The canonical triangulation (CellMesh) of cells[chosen[k]]; its outline is their convex hull. `cells` ascending.
+/// The canonical triangulation (CellMesh) of cells[chosen[k]]; its outline is their convex hull. Both lists ascending.
 /// Throws BadInput where they lie on one line or two are the same. Cost: about 2 us a vertex.
 CellTriangulation triangulate_cells(std::span<const greedy::Cell> cells, std::vector<std::uint32_t> chosen);
 /// Of all of them.

@@ -1,9 +1,10 @@
 // A Delaunay triangulation of grid cells that can be edited: vertices inserted at any cell, moved and removed. The
 // convex outline stays as it is.
 //
-// Exact integer predicates; of four vertices on one circle the diagonal is the one at the first of them in raster order,
-// so that the triangulation depends on the set of its vertices alone, not on the edits that led to it. Triangles and vertices are numbered without gaps: a removal moves the last of each into the
-// free number. Triangles that an edit made, changed or renumbered are collected in changed().
+// Exact integer predicates; of four vertices on one circle the diagonal is the one at the first of them in raster
+// order, so that the triangulation depends on the set of its vertices alone, not on the edits that led to it. Triangles
+// and vertices are numbered without gaps: a removal moves the last of each into the free number. Triangles that an edit
+// made, changed or renumbered are collected in changed().
 #pragma once
 
 #include <array>
