@@ -242,6 +242,7 @@ TEST(CompactParts, RelaxedGradientsBendLeastAndReproducePlanes) {
     Bending(tin.points, tin.triangles).relax(data, held);
     const auto surface = [&] {
       std::vector<Vec2> gradients;
+      gradients.reserve(data.size());
       for (const VertexJet& u : data) gradients.push_back({u[1], u[2]});
       return make_terrain(tin, Georef{}, {.gradients = GradientKind::given, .given = gradients});
     };
