@@ -44,7 +44,7 @@ void save_model(const Model& model, const std::string& path, bool overwrite) {
 Model load_model(const std::string& path, ModelFileNotes* notes) {
   std::error_code ec;
   if (std::filesystem::is_directory(path, ec)) {
-    if (notes) *notes = {kFormatMajor, kFormatMinor, "tiles", model_size(path)};
+    if (notes) *notes = {kFormatMajor, kFormatMinor, false, "tiles", model_size(path)};
     return load_tiled_model(path);
   }
   return decode_model(read_file(path), path, notes);
