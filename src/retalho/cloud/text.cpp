@@ -197,6 +197,9 @@ class Parser {
     if (!columns_.named && fields_.back().empty()) fields_.pop_back();  // a separator at the end of the line
     width_ = fields_.size();
     if (!columns_.named && width_ >= 6) columns_.count = 6;
+    const auto end = columns_.index.begin() + static_cast<std::ptrdiff_t>(columns_.count);
+    if (const std::size_t last = *std::max_element(columns_.index.begin(), end); last >= width_)
+      fail(fmt::format("{} values, but the header names x, y or z in column {}", width_, last + 1));
     return true;
   }
 

@@ -92,7 +92,8 @@ std::uint64_t header_number(Tokens& tokens, const char* what, std::uint64_t larg
 
 }  // namespace
 
-Raster read_pgm(const ByteSource& source, const std::string& name, const Context& context) {
+Raster read_pgm(const ByteSource& source, const std::string& name, const Context& context,
+                std::optional<std::uint64_t> size) {
   Tokens tokens(source, name);
   const int first = tokens.next(), second = tokens.next(), third = tokens.peek();
   if (first != 'P' || second != '2' || !(third == '#' || third == ' ' || (third >= '\t' && third <= '\r')))
@@ -103,6 +104,10 @@ Raster read_pgm(const ByteSource& source, const std::string& name, const Context
   raster.columns = static_cast<int>(header_number(tokens, "the width", kSide));
   raster.rows = static_cast<int>(header_number(tokens, "the height", kSide));
   const std::uint64_t maximum = header_number(tokens, "the largest value (maxval)", kLargest);
+  // A sample takes a digit and the white space before it.
+  if (size && raster.cells() > *size / 2)
+    tokens.fail(fmt::format("{} x {} samples do not fit into {} bytes: the file is cut off, or its size line is wrong",
+                            raster.columns, raster.rows, *size));
   check_claim(raster.columns, raster.rows, maximum <= (1U << 24) ? sizeof(float) : sizeof(double), name);
 
   HeightSink sink(raster.cells());

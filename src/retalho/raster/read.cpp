@@ -68,8 +68,10 @@ Raster read_ascii_pgm(const std::string& path, const ReadOptions& options, ReadN
     throw BadInput(fmt::format("'{}' has no band {}: a PGM has one band", path, options.band), path);
   const FileHandle handle(path);
   if (!handle.file) throw CannotRead(fmt::format("cannot open '{}'", path), path);
-  Raster raster =
-      read_pgm([&](char* to, std::size_t size) { return VSIFReadL(to, 1, size, handle.file); }, path, context);
+  std::error_code ec;
+  const auto bytes = std::filesystem::file_size(path, ec);  // not of GDAL's own file systems, whose archives unpack
+  Raster raster = read_pgm([&](char* to, std::size_t size) { return VSIFReadL(to, 1, size, handle.file); }, path,
+                           context, ec ? std::nullopt : std::optional<std::uint64_t>(bytes));
   apply_nodata(raster, options.nodata);
   notes.driver = "PGM (ASCII)";
   notes.data_type = "ASCII integer";

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           rest.remove_prefix(n);
           return n;
         },
-        "fuzz.pgm", {});
+        "fuzz.pgm", {}, size);
     fuzz::require(raster.columns > 0 && raster.rows > 0, "a grid without cells");
     fuzz::require(raster.cells() <= size, "more cells than bytes");
   });
