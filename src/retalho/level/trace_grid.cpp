@@ -33,8 +33,10 @@ struct Strip {
 
 class StripTracer {
  public:
-  StripTracer(const FixedGrid& grid, const FixedLevels& levels, double tolerance, bool keep_border, Strip& strip)
+  StripTracer(const FixedGrid& grid, const FixedLevels& levels, double tolerance, bool keep_border, Strip& strip,
+              const Context& context)
       : grid_(grid),
+        context_(context),
         levels_(levels),
         keep_border_(keep_border),
         strip_(strip),
@@ -43,12 +45,11 @@ class StripTracer {
         high_(low_.size()),
         candidates_(low_.size()) {}
 
-  void run(int first, int last, const Context& context) {
+  void run(int first, int last) {
     trace_row(first, above_);
     strip_.top = above_.roots;
     strip_.top_undecided = strip_.trace.undecided_edges;
     for (int row = first; row < last; ++row) {
-      context.check();
       trace_row(row + 1, below_);
       trace_columns(row);
       trace_patches(row);
@@ -119,6 +120,7 @@ class StripTracer {
     const std::size_t found = select(n);
     std::size_t done = 0;
     for (std::size_t i = 0; i < found; ++i) {
+      context_.check();  // a patch may hold thousands of lines
       const std::size_t c = candidates_[i];
       while (done <= c) edges.start[done++] = static_cast<std::uint32_t>(edges.roots.size());
       const int column = static_cast<int>(c);
@@ -143,6 +145,7 @@ class StripTracer {
     const std::size_t found = select(n);
     std::size_t done = 0;
     for (std::size_t i = 0; i < found; ++i) {
+      context_.check();  // a patch may hold thousands of lines
       const std::size_t c = candidates_[i];
       while (done <= c) beside_.start[done++] = static_cast<std::uint32_t>(beside_.roots.size());
       const int column = static_cast<int>(c);
@@ -162,6 +165,7 @@ class StripTracer {
     bound_patches(row);
     const std::size_t found = select(static_cast<std::size_t>(grid_.columns) - 1);
     for (std::size_t i = 0; i < found; ++i) {
+      context_.check();  // a patch may hold thousands of lines
       const std::size_t c = candidates_[i];
       const int column = static_cast<int>(c);
       if (!grid_.has_patch(column, row)) continue;
@@ -175,6 +179,7 @@ class StripTracer {
   Vec2 place(int column, int row) const { return {column * grid_.cell_width, -row * grid_.cell_height}; }
 
   const FixedGrid& grid_;
+  const Context& context_;
   const FixedLevels& levels_;
   bool keep_border_;
   Strip& strip_;
@@ -185,7 +190,7 @@ class StripTracer {
 };
 
 /// Strips one behind the other. A root on the row between two strips was found by both: the second's is the first's.
-Trace join(std::vector<Strip>& strips, std::vector<BorderEdge>* border) {
+Trace join(std::vector<Strip>& strips, std::vector<BorderEdge>* border, const Context& context) {
   Trace all;
   std::size_t total = 0;
   for (const Strip& s : strips) total += s.trace.points.size();
@@ -194,6 +199,7 @@ Trace join(std::vector<Strip>& strips, std::vector<BorderEdge>* border) {
   all.level.reserve(total);
   std::vector<std::uint32_t> seam;  // of the strip before: points of its last row, in the joined numbering
   for (std::size_t k = 0; k < strips.size(); ++k) {
+    context.check();
     Strip& s = strips[k];
     const std::size_t shared = k == 0 ? 0 : s.top.size();
     // The first row is traced first, so its roots are points 0, 1, ... of the strip.
@@ -239,11 +245,11 @@ Trace trace_grid(const FixedGrid& grid, const FixedLevels& levels, double tolera
   parallel_chunks(strips.size(), 1, context, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) {
       const int first = static_cast<int>(s) * kStripRows;
-      StripTracer(grid, levels, tolerance, border != nullptr, strips[s])
-          .run(first, std::min(patch_rows, first + kStripRows), context);
+      StripTracer(grid, levels, tolerance, border != nullptr, strips[s], context)
+          .run(first, std::min(patch_rows, first + kStripRows));
     }
   });
-  return join(strips, border);
+  return join(strips, border, context);
 }
 
 }  // namespace retalho

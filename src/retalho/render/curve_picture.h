@@ -59,7 +59,8 @@ struct CurvePicture {
   int panel_width = 640, panel_height = 480;
 };
 
-/// By the ending: .svg, .pdf or .png. Atomic. Throws UsageError (another ending), BadInput (nothing to draw), CannotWrite.
+/// By the ending: .svg, .pdf or .png. Atomic. Throws UsageError (another ending), BadInput (nothing to draw),
+/// CannotWrite.
 void write_picture(const CurvePicture& picture, const std::string& path, bool overwrite = false);
 
 /// Makes the panel show everything that is in it, with a margin of 6 %.
