@@ -8,6 +8,7 @@
 #include "fitting.h"
 #include "retalho/core/error.h"
 #include "retalho/level/contour.h"
+#include "retalho/render/contour_path.h"
 #include "retalho/render/curve_picture.h"
 #include "retalho/render/field.h"
 #include "retalho/tin/refine.h"
@@ -19,16 +20,6 @@ struct Named {
   std::string name;
   ContourSet lines;
 };
-
-PlanePath path_of(const ContourSet& set, const ContourLine& line) {
-  PlanePath path;
-  for (std::size_t i = line.begin; i < line.end; ++i) {
-    path.verbs.push_back(i == line.begin ? PathVerb::move : PathVerb::line);
-    path.points.push_back(set.points[i]);
-  }
-  if (line.closed) path.verbs.push_back(PathVerb::close);
-  return path;
-}
 
 std::vector<std::string> draw(const Program& program, const std::vector<Named>& all, const Extent& shown,
                               const SurfaceComparison& comparison) {
@@ -52,7 +43,7 @@ std::vector<std::string> draw(const Program& program, const std::vector<Named>& 
     panel.paths.push_back(frame);
     for (const ContourLine& line : one.lines.lines) {
       PicturePath path;
-      path.path = path_of(one.lines, line);
+      path.path = contour_path(one.lines, line);
       path.stroke = {{120, 70, 30}, comparison.index[static_cast<std::size_t>(line.level)] ? 1.8 : 0.8};
       panel.paths.push_back(std::move(path));
     }

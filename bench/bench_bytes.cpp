@@ -31,38 +31,17 @@
 #include "retalho/raster/gdal.h"
 #include "retalho/raster/io.h"
 #include "retalho/terrain/report.h"
+#include "support.h"
 
 namespace {
 
 using namespace retalho;
 using nlohmann::json;
 namespace fs = std::filesystem;
+using bench::cpu_seconds, bench::grids;
 
 constexpr int kParts[] = {25, 50, 100};      // of the height range: largest errors
 constexpr double kPercents[] = {0.75, 3.0};  // flat vertices, of the valid cells
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-fs::path data_folder() {
-  const char* folder = std::getenv("RETALHO_DATA");
-  return folder ? fs::path(folder) : fs::path(RETALHO_BENCH_DIR) / "../../shared/data";
-}
-
-std::vector<fs::path> grids() {
-  std::vector<fs::path> result{fs::path(RETALHO_BENCH_DIR) / "../examples/jacksboro.vrt"};
-  for (const auto& entry : fs::directory_iterator(data_folder() / "dem")) {
-    const std::string ending = entry.path().extension().string();
-    if (ending == ".tif" || ending == ".hgt" || ending == ".zip" || ending == ".dem" || ending == ".bil" ||
-        entry.path().filename() == "crater.pgm")
-      result.push_back(entry.path());
-  }
-  std::sort(result.begin() + 1, result.end());
-  return result;
-}
 
 /// One strip, as strong as zstd gets.
 std::size_t lerc_bytes(const Raster& raster, double max_error) {

@@ -32,42 +32,21 @@
 #include "retalho/terrain/report.h"
 #include "retalho/terrain/surface_refine.h"
 #include "retalho/tin/refine.h"
+#include "support.h"
 
 namespace {
 
 using namespace retalho;
 using nlohmann::json;
 namespace fs = std::filesystem;
+using bench::cpu_seconds, bench::data_folder, bench::grids;
 
 constexpr int kPercents[] = {1, 3, 6};
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double peak_bytes() {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-fs::path data_folder() {
-  const char* folder = std::getenv("RETALHO_DATA");
-  return folder ? fs::path(folder) : fs::path(RETALHO_BENCH_DIR) / "../../shared/data";
-}
-
-std::vector<fs::path> grids() {
-  std::vector<fs::path> result{fs::path(RETALHO_BENCH_DIR) / "../examples/jacksboro.vrt"};
-  for (const auto& entry : fs::directory_iterator(data_folder() / "dem")) {
-    const std::string ending = entry.path().extension().string();
-    const bool is_grid = ending == ".tif" || ending == ".hgt" || ending == ".zip" || ending == ".dem" ||
-                         ending == ".bil" || entry.path().filename() == "crater.pgm";
-    if (is_grid) result.push_back(entry.path());
-  }
-  std::sort(result.begin() + 1, result.end());
-  return result;
 }
 
 json facts(const ErrorReport& e, const Terrain& t) {

@@ -27,14 +27,14 @@
 #include "retalho/tetraquad/adaptive.h"
 #include "retalho/tetraquad/fit.h"
 #include "retalho/tetraquad/rays.h"
+#include "support.h"
 
 using namespace retalho;
 
 namespace {
 
 std::string data(const std::string& name) {
-  const char* folder = std::getenv("RETALHO_DATA");
-  return (folder != nullptr ? std::string(folder) : std::string("../shared/data")) + "/points/" + name;
+  return (bench::data_folder() / "points" / name).string();
 }
 
 double cpu_now() {

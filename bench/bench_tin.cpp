@@ -16,6 +16,7 @@
 #include "retalho/raster/io.h"
 #include "retalho/tin/greedy_heap.h"
 #include "retalho/tin/refine.h"
+#include "support.h"
 
 using namespace retalho;
 
@@ -35,11 +36,6 @@ constexpr Case kCases[] = {
     {"n48_1", "N48W125.hgt.zip", 1, true, 1097846, 4.2, 217},
     {"gabilan", "gabilan.bil", 0.5, false, 4425 / 1.0206, 0, 0},
 };
-
-std::string data(const std::string& name) {
-  const char* folder = std::getenv("RETALHO_DATA");
-  return (folder != nullptr ? std::string(folder) : std::string("../shared/data")) + "/dem/" + name;
-}
 
 double cpu() {
   rusage u{};
@@ -65,7 +61,7 @@ double resident_megabytes() {
 }
 
 Raster load(const Case& c) {
-  Raster r = read_raster(data(c.file));
+  Raster r = read_raster(bench::dem(c.file));
   if (!c.lower_half) return r;
   const auto& z = std::get<std::vector<float>>(r.heights);
   Raster half = r;

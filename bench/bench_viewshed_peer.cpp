@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "gdal_viewshed.h"
 #include "retalho/raster/io.h"
 #include "retalho/visibility/line_of_sight.h"
 #include "retalho/visibility/viewshed.h"
+#include "support.h"
 
 using namespace retalho;
 namespace fs = std::filesystem;
@@ -22,11 +24,6 @@ namespace {
 
 constexpr int kObservers = 20;
 constexpr int kSide = 1000;  // larger grids are cut to their middle: the twin takes a while
-
-std::string data(const std::string& name) {
-  const char* folder = std::getenv("RETALHO_DATA");
-  return (folder != nullptr ? std::string(folder) : std::string("../shared/data")) + "/dem/" + name;
-}
 
 Raster middle_of(const Raster& r) {
   Raster out;
@@ -44,11 +41,7 @@ Raster middle_of(const Raster& r) {
 
 /// What gdal_viewshed says is visible; its own program, file to file. Throws Error when it cannot be run.
 std::vector<bool> gdal_viewshed(const Raster& r, const Observer& o, const std::string& folder) {
-  const Vec2 at = r.georef.to_crs(r.centre(o.column, o.row));
-  const std::string command =
-      fmt::format("gdal_viewshed -q -md 0 -cc 0 -oz {} -tz 0 -ox {:.17g} -oy {:.17g} {}/in.tif {}/out.tif >/dev/null",
-                  o.height, at.x, at.y, folder, folder);
-  if (std::system(command.c_str()) != 0)
+  if (!bench::run_gdal_viewshed(r, o, folder))
     throw Error(Error::Kind::internal, "gdal_viewshed cannot be run: install gdal-bin");
   const Raster seen = read_raster(folder + "/out.tif");
   if (seen.columns != r.columns || seen.rows != r.rows)
@@ -64,7 +57,7 @@ struct Count {
 
 /// The twin looks at every cell in which the two differ, and at every hundredth of the others.
 Count compare(const std::string& name, const std::string& folder) {
-  const Raster r = middle_of(read_raster(data(name)));
+  const Raster r = middle_of(read_raster(bench::dem(name)));
   write_raster(r, folder + "/in.tif", {.creation_options = {"COMPRESS=NONE"}, .overwrite = true});
   std::mt19937_64 random(7);
   Count count;

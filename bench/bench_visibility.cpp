@@ -15,18 +15,15 @@
 #include <limits>
 #include <string>
 
+#include "gdal_viewshed.h"
 #include "retalho/raster/io.h"
 #include "retalho/visibility/intervisibility.h"
 #include "retalho/visibility/viewshed.h"
+#include "support.h"
 
 using namespace retalho;
 
 namespace {
-
-std::string data(const std::string& name) {
-  const char* folder = std::getenv("RETALHO_DATA");
-  return (folder != nullptr ? std::string(folder) : std::string("../shared/data")) + "/dem/" + name;
-}
 
 double cpu_of(int who) {
   rusage u{};
@@ -82,11 +79,7 @@ double gdal_seconds(const Raster& r, const Observer& o, int runs) {
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < runs; ++i) {
     const double start = cpu_of(RUSAGE_CHILDREN);
-    const Vec2 at = r.georef.to_crs(r.centre(o.column, o.row));
-    const std::string command =
-        fmt::format("gdal_viewshed -q -md 0 -cc 0 -oz {} -tz 0 -ox {} -oy {} {}/in.tif {}/out.tif >/dev/null 2>&1",
-                    o.height, at.x, at.y, folder, folder);
-    if (std::system(command.c_str()) != 0) best = std::numeric_limits<double>::quiet_NaN();
+    if (!bench::run_gdal_viewshed(r, o, folder)) best = std::numeric_limits<double>::quiet_NaN();
     best = std::min(best, cpu_of(RUSAGE_CHILDREN) - start);
   }
   std::filesystem::remove_all(folder);
@@ -104,7 +97,7 @@ int main(int argc, char** argv) {
   Context one;
   one.threads = 1;
   try {
-    const Raster n44 = read_raster(data("N44W072.hgt"));
+    const Raster n44 = read_raster(bench::dem("N44W072.hgt"));
     if (want("viewshed_3600") || want("gdal_ratio")) {
       const Raster big = enlarge(n44, 3, 3600, 3600);
       const Observer o{1800, 1800, 2};
@@ -119,7 +112,7 @@ int main(int argc, char** argv) {
     }
     const bool map = want("map_1000") || want("map_speedup") || want("map_1000_rmse") || want("map_1000_max");
     if (map) {
-      const Raster dom = read_raster(data("dom1_32_356_5699_1_nw_2020.tif"));
+      const Raster dom = read_raster(bench::dem("dom1_32_356_5699_1_nw_2020.tif"));
       std::vector<float> result;
       if (want("map_speedup")) {
         Context two;

@@ -79,20 +79,7 @@ ModelPointer Models::fit(const Json& input, const Context& context) {
 
 std::shared_ptr<const Raster> Models::grid_of(const FittedModel& model, const Context& context) {
   if (model.grid) return model.grid;
-  const Terrain& terrain = *model.terrain;
-  if (terrain.grid.columns == 0)
-    throw BadInput("this model was made from points and has no cells: there is no grid to look over");
-  auto raster = std::make_shared<Raster>();
-  raster->columns = terrain.grid.columns;
-  raster->rows = terrain.grid.rows;
-  raster->cell_width = terrain.grid.cell_width;
-  raster->cell_height = terrain.grid.cell_height;
-  raster->georef = terrain.georef;
-  std::vector<double> heights(raster->cells());
-  model.evaluator->grid_values({0, 0}, {raster->cell_width, raster->cell_height}, raster->columns, raster->rows,
-                               heights, {}, context);
-  raster->heights = std::move(heights);
-  return raster;
+  return std::make_shared<const Raster>(raster_of_cells(*model.evaluator, context));
 }
 
 Json report_json(const FittedModel& model) {

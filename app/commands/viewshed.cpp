@@ -39,22 +39,7 @@ Raster load_heights(const Program& program, const Options& options, const Contex
     return load_grid(program, options.input, options.grid, summary, context);
   }
   const Terrain terrain = load_terrain(options.input);
-  if (terrain.grid.columns == 0)
-    throw BadInput(
-        fmt::format(
-            "'{}' was made from points and has no cells: sample it on a raster first (retalho sample --resolution R)",
-            options.input),
-        options.input);
-  Raster raster;
-  raster.columns = terrain.grid.columns;
-  raster.rows = terrain.grid.rows;
-  raster.cell_width = terrain.grid.cell_width;
-  raster.cell_height = terrain.grid.cell_height;
-  raster.georef = terrain.georef;
-  std::vector<double> heights(raster.cells());
-  TerrainEvaluator(terrain, context)
-      .grid_values({0, 0}, {raster.cell_width, raster.cell_height}, raster.columns, raster.rows, heights, {}, context);
-  raster.heights = std::move(heights);
+  Raster raster = raster_of_cells(TerrainEvaluator(terrain, context), context);
   program.say(
       fmt::format("{}: the model at the {} x {} cells of its grid", options.input, raster.columns, raster.rows));
   return raster;
@@ -243,21 +228,13 @@ void run_surface(const Program& program, const Options& options, const Stopwatch
   }
   std::size_t seen = 0;
   const std::size_t what = choose("--what", options.what, kWhat);
-  Raster raster;
-  raster.columns = terrain.grid.columns;
-  raster.rows = terrain.grid.rows;
-  raster.cell_width = terrain.grid.cell_width;
-  raster.cell_height = terrain.grid.cell_height;
-  raster.georef = terrain.georef;
+  Raster raster = raster_of_cells(evaluator, context);
   std::vector<float> map;
   if (what == 2) {
     map = result_of_needed(surface_needed_heights(evaluator, observers, field, context), field.target_height, seen);
   } else {
-    const auto valid = [&](std::size_t i) {
-      const auto columns = static_cast<std::size_t>(raster.columns);
-      return terrain.grid.has_data(raster.centre(static_cast<int>(i % columns), static_cast<int>(i / columns)));
-    };
-    map = result_of(what, surface_observer_counts(evaluator, observers, field, context), seen, valid);
+    map = result_of(what, surface_observer_counts(evaluator, observers, field, context), seen,
+                    [&](std::size_t i) { return !std::isnan(raster.at(i)); });
   }
   program.say(fmt::format("{}: the {} surface itself, at the centres of {} x {} cells", options.input,
                           surface_name(terrain.kind), raster.columns, raster.rows));

@@ -9,6 +9,7 @@
 #include "retalho/core/error.h"
 #include "retalho/level/line_curves.h"
 #include "retalho/render/color.h"
+#include "retalho/render/contour_path.h"
 #include "retalho/render/sheet_frame.h"
 #include "retalho/render/sheet_labels.h"
 #include "retalho/render/sheet_page.h"
@@ -107,16 +108,6 @@ void add_tints(SheetPage& page, const SheetContent& content, const SheetMap& map
     page.groups.push_back(std::move(group));
 }
 
-PlanePath polyline(const ContourSet& page, const ContourLine& line) {
-  PlanePath path;
-  for (std::size_t i = line.begin; i < line.end; ++i) {
-    path.verbs.push_back(i == line.begin ? PathVerb::move : PathVerb::line);
-    path.points.push_back(page.points[i]);
-  }
-  if (line.closed) path.verbs.push_back(PathVerb::close);
-  return path;
-}
-
 PlanePath curve(const CurveSet& set, const CurveLine& line) {
   PlanePath path;
   path.verbs.push_back(PathVerb::move);
@@ -171,7 +162,7 @@ void add_lines(SheetPage& page, const SheetContent& content, const SheetOptions&
     report.corners = curves.corners;
     report.unproved = curves.unproved;
   } else {
-    for (const ContourLine& line : lines.lines) add(line.level, polyline(lines, line));
+    for (const ContourLine& line : lines.lines) add(line.level, contour_path(lines, line));
   }
   page.groups.push_back(std::move(ordinary));
   page.groups.push_back(std::move(index));

@@ -116,4 +116,21 @@ void TerrainEvaluator::values(std::span<const Vec2> points, std::span<double> ou
   });
 }
 
+Raster raster_of_cells(const TerrainEvaluator& evaluator, const Context& context) {
+  const Terrain& terrain = evaluator.terrain();
+  const GridDomain& grid = terrain.grid;
+  if (grid.columns == 0)
+    throw BadInput("the model was made from points and has no cells: sample it on a raster first (--resolution)");
+  Raster raster;
+  raster.columns = grid.columns;
+  raster.rows = grid.rows;
+  raster.cell_width = grid.cell_width;
+  raster.cell_height = grid.cell_height;
+  raster.georef = terrain.georef;
+  std::vector<double> heights(raster.cells());
+  evaluator.grid_values({0, 0}, {grid.cell_width, grid.cell_height}, grid.columns, grid.rows, heights, {}, context);
+  raster.heights = std::move(heights);
+  return raster;
+}
+
 }  // namespace retalho

@@ -51,4 +51,8 @@ class TerrainEvaluator {
   std::unique_ptr<Parts> parts_;
 };
 
+/// The model at the cells of the grid that it was made from (NaN: no data), with its georeference.
+/// Throws BadInput for a model of points, which has no cells.
+Raster raster_of_cells(const TerrainEvaluator& evaluator, const Context& context = {});
+
 }  // namespace retalho

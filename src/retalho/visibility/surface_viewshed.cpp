@@ -32,35 +32,25 @@ double eye_of(const TerrainEvaluator& evaluator, const SurfaceObserver& observer
   return ground_at(evaluator, observer.at, "observer") + observer.height;
 }
 
-/// Heights of the surface at the centres of the model's cells.
-std::vector<double> cell_heights(const TerrainEvaluator& evaluator, const Context& context) {
-  const GridDomain& grid = evaluator.terrain().grid;
-  if (grid.columns == 0)
-    throw BadInput("the model was made from points and has no cells to look at: fit it to a grid, or sample it first");
-  std::vector<double> heights(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
-  evaluator.grid_values({0, 0}, {grid.cell_width, grid.cell_height}, grid.columns, grid.rows, heights, {}, context);
-  return heights;
-}
-
 /// Calls visit(cell, sight, field, target, offset, ground) for all cells in the field of one observer, threads sharing
 /// the rows; ground is the target's height over the eye, lowered by curvature.
 template <class Visit>
-void each_target(const SegmentWalk& walk, const std::vector<double>& heights, const SurfaceObserver& observer,
+void each_target(const SegmentWalk& walk, const Raster& cells, const SurfaceObserver& observer,
                  const ViewshedOptions& options, const Context& context, const Visit& visit) {
-  const GridDomain& grid = walk.evaluator().terrain().grid;
   const double eye = eye_of(walk.evaluator(), observer);
   const FieldOfView view(options);
   const SurfaceSight sight(walk, observer.at, eye, view.drop(), options.voids);
-  parallel_chunks(static_cast<std::size_t>(grid.rows), 1, context, [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row)
-      for (int column = 0; column < grid.columns; ++column) {
-        const std::size_t cell = row * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(column);
-        if (std::isnan(heights[cell])) continue;
-        const Vec2 target{column * grid.cell_width, -static_cast<double>(row) * grid.cell_height};
+  parallel_chunks(static_cast<std::size_t>(cells.rows), 1, context, [&](std::size_t first, std::size_t last) {
+    for (auto row = static_cast<int>(first); row < static_cast<int>(last); ++row)
+      for (int column = 0; column < cells.columns; ++column) {
+        const std::size_t cell = cells.index(column, row);
+        const double height = cells.at(cell);
+        if (std::isnan(height)) continue;
+        const Vec2 target = cells.centre(column, row);
         const Vec2 offset = target - observer.at;
         const double distance2 = dot(offset, offset);
         if (distance2 > 0 && !view.holds(offset)) continue;
-        visit(cell, sight, view, target, distance2, heights[cell] - view.drop() * distance2 - eye);
+        visit(cell, sight, view, target, distance2, height - view.drop() * distance2 - eye);
       }
   });
 }
@@ -70,11 +60,11 @@ void each_target(const SegmentWalk& walk, const std::vector<double>& heights, co
 std::vector<std::uint32_t> surface_observer_counts(const TerrainEvaluator& evaluator,
                                                    std::span<const SurfaceObserver> observers,
                                                    const ViewshedOptions& options, const Context& context) {
-  const std::vector<double> heights = cell_heights(evaluator, context);
+  const Raster cells = raster_of_cells(evaluator, context);
   const SegmentWalk walk(evaluator, context);
-  std::vector<std::uint32_t> counts(heights.size(), 0);
+  std::vector<std::uint32_t> counts(cells.cells(), 0);
   for (std::size_t i = 0; i < observers.size(); ++i) {
-    each_target(walk, heights, observers[i], options, context,
+    each_target(walk, cells, observers[i], options, context,
                 [&](std::size_t cell, const SurfaceSight& sight, const FieldOfView& view, Vec2 target, double distance2,
                     double ground) {
                   const double aim = ground + options.target_height;
@@ -88,12 +78,12 @@ std::vector<std::uint32_t> surface_observer_counts(const TerrainEvaluator& evalu
 
 std::vector<float> surface_needed_heights(const TerrainEvaluator& evaluator, std::span<const SurfaceObserver> observers,
                                           const ViewshedOptions& options, const Context& context) {
-  const std::vector<double> heights = cell_heights(evaluator, context);
+  const Raster cells = raster_of_cells(evaluator, context);
   const SegmentWalk walk(evaluator, context);
   constexpr double none = std::numeric_limits<double>::infinity();
-  std::vector<float> needed(heights.size(), std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> needed(cells.cells(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < observers.size(); ++i) {
-    each_target(walk, heights, observers[i], options, context,
+    each_target(walk, cells, observers[i], options, context,
                 [&](std::size_t cell, const SurfaceSight& sight, const FieldOfView&, Vec2 target, double distance2,
                     double ground) {
                   const double slope = distance2 == 0 ? ground : sight.raise(target, ground, none);

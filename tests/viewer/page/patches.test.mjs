@@ -1,26 +1,7 @@
 // The triangular-surface view against `retalho patch --json` on the patch that the page saves.
 import assert from 'node:assert/strict';
-import {mkdtempSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
 import {join} from 'node:path';
-import {retalho, View} from './support.mjs';
-
-async function withPage(run) {
-  const folder = mkdtempSync(join(tmpdir(), 'retalho-patches-'));
-  const view = await View.open([]);
-  try {
-    await view.go();
-    await view.page.getByRole('tab', {name: 'Triangular surfaces'}).click();
-    await view.quiet();
-    await run({view, page: view.page, folder, bar: view.page.locator('.controls:not([hidden])')});
-    assert.deepEqual(view.problems, [], 'the browser reports no error');
-  } finally {
-    assert.equal(await view.close(), 0);
-    rmSync(folder, {recursive: true});
-  }
-}
-
-const listed = (box) => box.evaluate((element) => Object.fromEntries([...element.querySelectorAll('dt')].map((dt) => [dt.textContent, dt.nextElementSibling.textContent.replaceAll('−', '-')])));
+import {listed, retalho, withPage} from './support.mjs';
 
 async function program(page, folder, ...more) {
   const saving = page.waitForEvent('download');
@@ -35,7 +16,7 @@ function near(a, b, relative, absolute, words) {
 }
 
 export const tests = [
-  ['a dragged point: the surface, its gap and its jump are the program’s, in all recoveries', () => withPage(async ({view, page, folder, bar}) => {
+  ['a dragged point: the surface, its gap and its jump are the program’s, in all recoveries', () => withPage([], 'Triangular surfaces', async ({view, page, folder, bar}) => {
     await view.picture('patches-light');
     const before = await listed(bar.locator('.readout').first());
     const handles = JSON.parse(await page.locator('.patch-stage:not(.tetra-stage) canvas').getAttribute('data-handles'));
@@ -66,7 +47,7 @@ export const tests = [
     assert.deepEqual(back, [x, y], 'undo brings the point back');
   })],
 
-  ['the cursor of the parameter triangle is a point of the surface', () => withPage(async ({view, page, folder, bar}) => {
+  ['the cursor of the parameter triangle is a point of the surface', () => withPage([], 'Triangular surfaces', async ({view, page, folder, bar}) => {
     const box = await bar.locator('.parameters').boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height * 0.6);
     await view.quiet();
@@ -85,7 +66,7 @@ export const tests = [
     assert.ok(under['u, v'], 'the cursor is on the surface');
   })],
 
-  ['zebra, isophotes, parameter lines, curvature and error colours have their pictures and legends', () => withPage(async ({view, page, bar}) => {
+  ['zebra, isophotes, parameter lines, curvature and error colours have their pictures and legends', () => withPage([], 'Triangular surfaces', async ({view, page, bar}) => {
     for (const style of ['lines', 'zebra', 'isophotes', 'error', 'gaussian', 'mean']) {
       await bar.getByLabel('Colour').selectOption(style);
       await view.quiet();

@@ -1,4 +1,5 @@
 // Runs the program and a browser for the page's tests, as a person would: the printed address, Debian's chromium.
+import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
 import {existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -100,3 +101,22 @@ export class View {
     return code;
   }
 }
+
+/** Opens the page at one of its tabs, runs `run({view, page, folder, bar})`, and closes all; no error of the browser. */
+export async function withPage(files, tab, run) {
+  const folder = mkdtempSync(join(tmpdir(), 'retalho-page-test-'));
+  const view = await View.open(files);
+  try {
+    await view.go();
+    await view.page.getByRole('tab', {name: tab}).click();
+    await view.quiet();
+    await run({view, page: view.page, folder, bar: view.page.locator('.controls:not([hidden])')});
+    assert.deepEqual(view.problems, [], 'the browser reports no error');
+  } finally {
+    assert.equal(await view.close(), 0);
+    rmSync(folder, {recursive: true});
+  }
+}
+
+/** A list of terms and values as an object, with plain minus signs. */
+export const listed = (box) => box.evaluate((element) => Object.fromEntries([...element.querySelectorAll('dt')].map((dt) => [dt.textContent, dt.nextElementSibling.textContent.replaceAll('−', '-')])));

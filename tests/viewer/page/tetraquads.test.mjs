@@ -4,26 +4,9 @@ import {mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
-import {retalho, View} from './support.mjs';
+import {listed, retalho, View, withPage} from './support.mjs';
 
 const LIMIT = 1e-3;  // of a cell
-
-async function withPage(files, run) {
-  const folder = mkdtempSync(join(tmpdir(), 'retalho-tetraquads-'));
-  const view = await View.open(files);
-  try {
-    await view.go();
-    await view.page.getByRole('tab', {name: 'TetraQuads'}).click();
-    await view.quiet();
-    await run({view, page: view.page, folder, bar: view.page.locator('.controls:not([hidden])')});
-    assert.deepEqual(view.problems, [], 'the browser reports no error');
-  } finally {
-    assert.equal(await view.close(), 0);
-    rmSync(folder, {recursive: true});
-  }
-}
-
-const listed = (box) => box.evaluate((element) => Object.fromEntries([...element.querySelectorAll('dt')].map((dt) => [dt.textContent, dt.nextElementSibling.textContent.replaceAll('−', '-')])));
 
 /** Clicks a grid of places of the picture: how many rays hit, and the largest distance of the two hits. */
 async function probe(view, bar, columns, rows) {
@@ -45,7 +28,7 @@ async function probe(view, bar, columns, rows) {
 }
 
 export const tests = [
-  ['the shader’s hit is the program’s, to a thousandth of a cell, on every example', () => withPage([], async ({view, page, bar}) => {
+  ['the shader’s hit is the program’s, to a thousandth of a cell, on every example', () => withPage([], 'TetraQuads', async ({view, page, bar}) => {
     await bar.getByLabel('Ask where one clicks').check();
     const names = (await bar.getByLabel('Surface', {exact: true}).locator('option').allTextContents()).filter((name) => name.startsWith('Example'));
     assert.equal(names.length, 6);
@@ -65,7 +48,7 @@ export const tests = [
     await view.picture('tetraquads-jump');
   })],
 
-  ['a quadric’s slider moves the surface, the cut opens it; what is saved is what the program makes of it', () => withPage([], async ({view, page, folder, bar}) => {
+  ['a quadric’s slider moves the surface, the cut opens it; what is saved is what the program makes of it', () => withPage([], 'TetraQuads', async ({view, page, folder, bar}) => {
     await bar.getByLabel('Ask where one clicks').check();
     const box = await page.locator('.tetra-stage canvas').boundingBox();
     await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
@@ -118,7 +101,7 @@ export const tests = [
     }
     writeFileSync(cloud, text);
     try {
-      await withPage([cloud], async ({view, page, bar}) => {
+      await withPage([cloud], 'TetraQuads', async ({view, page, bar}) => {
         await page.locator('input[type=number][aria-label^="Resolution"]').fill('10');
         await page.keyboard.press('Enter');
         await view.quiet();
@@ -139,7 +122,7 @@ export const tests = [
     }
   }],
 
-  ['a file of quadrics given on the command line', () => withPage([fileURLToPath(new URL('../../../examples/tetraquads/ellipsoids-4.json', import.meta.url))], async ({view, bar}) => {
+  ['a file of quadrics given on the command line', () => withPage([fileURLToPath(new URL('../../../examples/tetraquads/ellipsoids-4.json', import.meta.url))], 'TetraQuads', async ({view, bar}) => {
     assert.equal((await listed(bar.locator('.facts'))).tetrahedra, '1');
     await view.picture('tetraquads-ellipsoids');
   })],

@@ -12,6 +12,7 @@ export class Tasks {
   private running = new Map<string, {key: string; abort: AbortController; state: TaskState}>();
   private done = new Map<string, string>();
   readonly errors = new Map<string, string>();
+  private count = 0;
 
   constructor(private changed: () => void) {}
 
@@ -38,6 +39,11 @@ export class Tasks {
       );
     }
     this.changed();
+  }
+
+  /** Runs `job` now, whatever was run under this name before. */
+  once(name: string, words: string, job: (signal: AbortSignal) => Promise<void>): void {
+    this.want(name, words, String(++this.count), job);
   }
 
   /** Ends everything that runs; it counts as not done. */

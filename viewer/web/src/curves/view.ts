@@ -1,6 +1,7 @@
 // The curve view: a document of curves, drawn and changed by hand; every number and every line is the program's.
 import {ask} from '../api';
 import {choice, download, make, say, slider, table, toggle} from '../dom';
+import {jsonInput} from '../opening';
 import type {Tasks} from '../tasks';
 import {asFile, CurveCanvas, emptyWords} from './canvas';
 import {addPoint, boxOf, chosen, growable, moveTo, NEW_KINDS, PRESETS, removePoint, rounded, snapped, type CurveDocument, type CurvesState, type Drawn} from './state';
@@ -66,25 +67,18 @@ export class CurvesView {
       toolBar.append(button);
     }
     const button = (words: string, hint: string, click: () => void) => make('button', {type: 'button', title: hint, click}, words);
-    const input: HTMLInputElement = make('input', {type: 'file', accept: '.json', hidden: true, change: async () => {
-      const file = input.files?.[0];
-      if (!file) return;
-      try {
-        const document = JSON.parse(await file.text()) as CurveDocument;
-        await ask('/api/curves/compute', {document});
-        this.open(document);
-      } catch (error) {
-        this.words.textContent = `${file.name}: ${error instanceof Error ? error.message : String(error)}`;
-      }
-      input.value = '';
-    }});
+    const input = jsonInput(this.tasks, this.words, async (parsed, signal) => {
+      const document = parsed as CurveDocument;
+      await ask('/api/curves/compute', {document}, signal);
+      this.open(document);
+    });
     this.element = make('div', {class: 'controls'},
       this.preset.element, make('div', {class: 'row'}, this.curve), this.kind.element, toolBar, this.snap.element,
       section('Show', ...Object.values(this.toggles).map((one) => one.element), this.t.element, this.combScale.element),
       section('Change', make('div', {class: 'row wrap'},
-        button('Split at t', 'Exact: the shape stays', () => void this.change('split')),
-        button('Raise degree', 'Exact: the shape stays', () => void this.change('elevate')),
-        button('As Bézier', 'The same curve by its Bézier points', () => void this.change('bezier')),
+        button('Split at t', 'Exact: the shape stays', () => this.change('split')),
+        button('Raise degree', 'Exact: the shape stays', () => this.change('elevate')),
+        button('As Bézier', 'The same curve by its Bézier points', () => this.change('bezier')),
         button('Remove curve', 'Undo brings it back', () => this.edit((s) => { s.document.curves.splice(s.selected, 1); s.selected = Math.max(0, s.selected - 1); s.point = -1; }))), this.numbers, this.words),
       section('Numbers', this.readout),
       make('div', {class: 'row wrap'},
@@ -115,15 +109,17 @@ export class CurvesView {
     });
   }
 
-  private async change(what: string): Promise<void> {
+  private change(what: string): void {
     const {document, selected, t} = this.state;
     this.words.textContent = '';
-    try {
-      const {words} = await ask('/api/curves/change', {document, curve: selected, what, t});
-      this.edit((s) => { s.document = words.document as CurveDocument; s.point = -1; });
-    } catch (error) {
-      this.words.textContent = error instanceof Error ? error.message : String(error);
-    }
+    this.tasks.once('change', 'Changing the curve', async (signal) => {
+      try {
+        const {words} = await ask('/api/curves/change', {document, curve: selected, what, t}, signal);
+        this.edit((s) => { s.document = words.document as CurveDocument; s.point = -1; });
+      } catch (error) {
+        if (!signal.aborted) this.words.textContent = error instanceof Error ? error.message : String(error);
+      }
+    });
   }
 
   show(state: CurvesState, active: boolean): void {

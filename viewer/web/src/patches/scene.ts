@@ -1,8 +1,7 @@
 // The picture of a triangular surface: the surface, its three curves, their control points to drag, the cursor.
-import {BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Scene, ShaderMaterial, SphereGeometry, Vector2, Vector3, WebGLRenderer, WireframeGeometry} from 'three';
-import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Plane, Raycaster, ShaderMaterial, SphereGeometry, Vector2, Vector3, WireframeGeometry} from 'three';
 import type {Answer} from '../api';
-import {make} from '../dom';
+import {Stage} from '../stage';
 import {rampTexture} from '../terrain/shaders';
 import {handles, type PatchesState, type Style, type Vec3} from './state';
 
@@ -69,12 +68,7 @@ export interface PatchSceneEvents {
   cameraMoved(camera: number[]): void;
 }
 
-export class PatchScene {
-  readonly canvas = make('canvas', {tabindex: 0, 'aria-label': 'The surface. Drag a point to move it; drag elsewhere to turn, right drag moves, the wheel zooms.'});
-  private readonly renderer: WebGLRenderer;
-  private readonly camera = new PerspectiveCamera(35, 1, 0.01, 1000);
-  private readonly scene = new Scene();
-  private readonly controls: OrbitControls;
+export class PatchScene extends Stage {
   private readonly raycaster = new Raycaster();
   private readonly material = new ShaderMaterial({glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     uniforms: {style: {value: 0}, ramp: {value: rampTexture('difference')}, range: {value: new Vector2(0, 1)}, flatFaces: {value: false}}});
@@ -85,16 +79,9 @@ export class PatchScene {
   private readonly dots = new Group();
   private readonly cursor = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffb000}));
   private held: {side: number; index: number; plane: Plane} | null = null;
-  private dirty = true;
-  private shown = false;
 
-  constructor(private element: HTMLElement, private events: PatchSceneEvents) {
-    this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true});
-    this.camera.up.set(0, 0, 1);
-    element.append(this.canvas);
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener('change', () => this.redraw());
-    this.controls.addEventListener('end', () => events.cameraMoved([...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => Number(v.toPrecision(7)))));
+  constructor(element: HTMLElement, private events: PatchSceneEvents) {
+    super(element, 'The surface. Drag a point to move it; drag elsewhere to turn, right drag moves, the wheel zooms.', true, (camera) => events.cameraMoved(camera));
     this.cursor.visible = false;
     for (const object of [this.surface, this.wires, this.polygons, ...this.sides]) object.frustumCulled = false;
     this.scene.add(this.surface, this.wires, this.polygons, this.dots, this.cursor, ...this.sides);
@@ -103,20 +90,6 @@ export class PatchScene {
     this.canvas.addEventListener('pointerup', () => this.up());
     this.canvas.addEventListener('pointercancel', () => this.up());
     this.canvas.addEventListener('pointerleave', () => events.hover(null));
-    new ResizeObserver(() => this.redraw()).observe(element);
-    const frame = () => {
-      requestAnimationFrame(frame);
-      if (this.dirty && this.shown) this.draw();
-    };
-    frame();
-  }
-
-  visible(on: boolean): void {
-    this.shown = on;
-    this.redraw();
-  }
-  redraw(): void {
-    this.dirty = true;
   }
 
   frame(centre: Vec3, size: number): void {
@@ -128,12 +101,6 @@ export class PatchScene {
     this.controls.maxDistance = size * 12;
     this.controls.update();
     this.redraw();
-  }
-  setCamera(state: number[]): void {
-    if (state.length !== 6 || !state.every(Number.isFinite)) return;
-    this.camera.position.fromArray(state);
-    this.controls.target.fromArray(state, 3);
-    this.controls.update();
   }
 
   takeSurface({arrays}: Answer, recovery: string): void {
@@ -201,22 +168,8 @@ export class PatchScene {
     return [box.left + ((p.x + 1) / 2) * box.width, box.top + ((1 - p.y) / 2) * box.height];
   }
 
-  picture(): Promise<Blob | null> {
-    this.draw();
-    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
-  }
-
-  private draw(): void {
-    this.dirty = false;
-    const width = this.element.clientWidth, height = this.element.clientHeight;
-    if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-    const size = this.renderer.getSize(new Vector2());
-    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
-    this.renderer.setClearColor(getComputedStyle(this.element).getPropertyValue('--sky').trim() || '#e8edf2');
-    this.renderer.render(this.scene, this.camera);
+  protected draw(): void {
+    if (!this.render(Math.min(2, devicePixelRatio))) return;
     // Where the points lie in the picture: for whoever cannot see it, and for tests.
     this.canvas.dataset.handles = JSON.stringify((this.dots.children as Mesh[]).map((dot) => this.toScreen(dot.position.toArray() as Vec3).map(Math.round)));
   }

@@ -2,6 +2,7 @@
 import {ask, type Answer} from '../api';
 import {choice, download, make, say, slider, svg, table, toggle} from '../dom';
 import {legend} from '../ramps';
+import {jsonInput} from '../opening';
 import type {Tasks} from '../tasks';
 import {PatchScene} from './scene';
 import {boundsOf, editable, movePoint, PATCH_PRESETS, robustRange, type PatchDocument, type PatchesState, type Recovery, type Style, type Vec3} from './state';
@@ -53,20 +54,12 @@ export class PatchesView {
     this.mesh = toggle('Triangles as drawn', (on) => this.edit((s) => { s.mesh = on; }));
     this.polygons = toggle('Control points', (on) => this.edit((s) => { s.polygons = on; }));
     this.drawTriangle();
-    const input: HTMLInputElement = make('input', {type: 'file', accept: '.json', hidden: true, change: async () => {
-      const file = input.files?.[0];
-      if (!file) return;
-      this.words.textContent = '';
-      try {
-        const document = editable(JSON.parse(await file.text()));
-        if (!document) throw new Error('expected {"patches": [{"sides": [three curves of kind "bezier" with points of three numbers]}]}');
-        await ask('/api/patches/compute', {document, divisions: 4, recovery: 'barycentric', colour: 'none'});
-        this.open(document);
-      } catch (error) {
-        this.words.textContent = `${file.name}: ${error instanceof Error ? error.message : String(error)}`;
-      }
-      input.value = '';
-    }});
+    const input = jsonInput(this.tasks, this.words, async (parsed, signal) => {
+      const document = editable(parsed);
+      if (!document) throw new Error('expected {"patches": [{"sides": [three curves of kind "bezier" with points of three numbers]}]}');
+      await ask('/api/patches/compute', {document, divisions: 4, recovery: 'barycentric', colour: 'none'}, signal);
+      this.open(document);
+    });
     this.element = make('div', {class: 'controls'}, this.preset.element,
       section('Surface', this.divisions.element, this.recovery.element, this.readout),
       section('Picture', this.style.element, this.mesh.element, this.polygons.element),

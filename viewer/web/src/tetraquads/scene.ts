@@ -1,9 +1,8 @@
 // The picture of a TetraQuad surface: tetrahedra whose fragments are rays (shader.ts), their edges, the chosen vertex.
-import {BackSide, BufferAttribute, BufferGeometry, Color, DataTexture, FloatType, GLSL3, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, NearestFilter, PerspectiveCamera, RGBAFormat, RGBAIntegerFormat, Scene, ShaderMaterial, SphereGeometry, UnsignedIntType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget} from 'three';
-import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {BackSide, BufferAttribute, BufferGeometry, DataTexture, FloatType, GLSL3, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, NearestFilter, RGBAFormat, RGBAIntegerFormat, ShaderMaterial, SphereGeometry, UnsignedIntType, Vector3, WebGLRenderTarget} from 'three';
 import type {Answer} from '../api';
-import {make} from '../dom';
 import {isSoftware} from '../software';
+import {Stage} from '../stage';
 import {FRAGMENT, VERTEX} from './shader';
 import type {TetraQuadsState} from './state';
 
@@ -16,12 +15,7 @@ function padded<T extends Float32Array | Uint32Array>(values: T, kind: {new (n: 
   return {data, rows};
 }
 
-export class TetraQuadScene {
-  readonly canvas = make('canvas', {tabindex: 0, 'aria-label': 'The surface. Drag turns, right drag moves, the wheel zooms.'});
-  private readonly renderer: WebGLRenderer;
-  private readonly camera = new PerspectiveCamera(35, 1, 0.01, 1000);
-  private readonly scene = new Scene();
-  private readonly controls: OrbitControls;
+export class TetraQuadScene extends Stage {
   private readonly material = new ShaderMaterial({glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT.replace('uniform mat4 projectionMatrix, modelViewMatrix;', 'uniform mat4 projectionMatrix;\nuniform mat4 modelViewMatrix;'), side: BackSide,
     uniforms: {corners: {value: null}, vertices: {value: null}, cornerWidth: {value: WIDTH}, vertexWidth: {value: WIDTH}, eye: {value: new Vector3()}, cutNormal: {value: new Vector3()}, cutOffset: {value: 1},
       onSurface: {value: false}, hitsOnly: {value: false}, dark: {value: false}}});
@@ -31,37 +25,16 @@ export class TetraQuadScene {
   private readonly mark = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0x1c2329}));
   private low = new Vector3();
   private high = new Vector3();
-  private dirty = true;
   private readonly ratio: number;
-  private shown = false;
 
-  constructor(private element: HTMLElement, cameraMoved: (camera: number[]) => void, clicked: (event: MouseEvent) => void) {
-    this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: false});
+  constructor(element: HTMLElement, cameraMoved: (camera: number[]) => void, clicked: (event: MouseEvent) => void) {
+    super(element, 'The surface. Drag turns, right drag moves, the wheel zooms.', false, cameraMoved);
     // A processor that plays a graphics card casts a quarter of the rays.
     this.ratio = isSoftware(this.renderer) ? 0.5 : Math.min(2, devicePixelRatio);
-    this.camera.up.set(0, 0, 1);
-    element.append(this.canvas);
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener('change', () => this.redraw());
-    this.controls.addEventListener('end', () => cameraMoved([...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => Number(v.toPrecision(7)))));
     for (const object of [this.tets, this.edges]) object.frustumCulled = false;
     this.pin.visible = this.mark.visible = false;
     this.scene.add(this.tets, this.edges, this.pin, this.mark);
     this.canvas.addEventListener('click', clicked);
-    new ResizeObserver(() => this.redraw()).observe(element);
-    const frame = () => {
-      requestAnimationFrame(frame);
-      if (this.dirty && this.shown) this.draw();
-    };
-    frame();
-  }
-
-  visible(on: boolean): void {
-    this.shown = on;
-    this.redraw();
-  }
-  redraw(): void {
-    this.dirty = true;
   }
 
   take({arrays}: Answer): void {
@@ -132,12 +105,6 @@ export class TetraQuadScene {
     this.controls.update();
     this.redraw();
   }
-  setCamera(state: number[]): void {
-    if (state.length !== 6 || !state.every(Number.isFinite)) return;
-    this.camera.position.fromArray(state);
-    this.controls.target.fromArray(state, 3);
-    this.controls.update();
-  }
 
   /** The cut: what is kept has normal . p <= offset. */
   cutOf(state: TetraQuadsState): {normal: number[]; offset: number} {
@@ -197,27 +164,9 @@ export class TetraQuadScene {
     return pixel[3] > 0.5 ? [...pixel.subarray(0, 3)] : null;
   }
 
-  picture(): Promise<Blob | null> {
-    this.draw();
-    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
-  }
-
-  private prepare(): void {
-    this.camera.aspect = (this.element.clientWidth || 1) / (this.element.clientHeight || 1);
-    this.camera.updateProjectionMatrix();
-    this.camera.updateMatrixWorld();
-  }
-
-  private draw(): void {
-    this.dirty = false;
-    const width = this.element.clientWidth, height = this.element.clientHeight;
-    if (width === 0 || height === 0 || !this.material.uniforms.vertices.value) return;
-    this.renderer.setPixelRatio(this.ratio);
-    const size = this.renderer.getSize(new Vector2());
-    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
-    this.prepare();
+  protected draw(): void {
+    if (!this.material.uniforms.vertices.value) return;
     (this.material.uniforms.eye.value as Vector3).copy(this.camera.position);
-    this.renderer.setClearColor(new Color(getComputedStyle(this.element).getPropertyValue('--sky').trim() || '#e8edf2'), 1);
-    this.renderer.render(this.scene, this.camera);
+    this.render(this.ratio);
   }
 }

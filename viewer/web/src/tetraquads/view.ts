@@ -1,6 +1,7 @@
 // The TetraQuad view: the surface by ray casting, its quadrics to change, and each click asked of the program as well.
 import {ask, work} from '../api';
 import {choice, download, make, say, slider, table, toggle} from '../dom';
+import {jsonInput} from '../opening';
 import type {Tasks} from '../tasks';
 import {TetraQuadScene} from './scene';
 import {coarseToFine, setTerm, termsOf, TERMS, TETRA_PRESETS, type QuadricDocument, type TetraQuadsState, type Term} from './state';
@@ -66,19 +67,11 @@ export class TetraQuadsView {
       this.sliders.set(term, one);
     }
     this.editor = make('div', {}, make('div', {class: 'row'}, this.vertex), ...[...this.sliders.values()].map((one) => one.element));
-    const input: HTMLInputElement = make('input', {type: 'file', accept: '.json', hidden: true, change: async () => {
-      const file = input.files?.[0];
-      if (!file) return;
-      this.words.textContent = '';
-      try {
-        const document = JSON.parse(await file.text()) as QuadricDocument;
-        await ask('/api/tetraquads/load', {document});
-        this.open(document);
-      } catch (error) {
-        this.words.textContent = `${file.name}: ${error instanceof Error ? error.message : String(error)}`;
-      }
-      input.value = '';
-    }});
+    const input = jsonInput(this.tasks, this.words, async (parsed, signal) => {
+      const document = parsed as QuadricDocument;
+      await ask('/api/tetraquads/load', {document}, signal);
+      this.open(document);
+    });
     this.element = make('div', {class: 'controls'}, this.source.element, this.resolution.element, this.facts,
       section('Picture', this.edges.element, this.onSurface.element, this.cutAxis.element, this.cut.element),
       section('Question', this.askToggle.element, this.readout),
