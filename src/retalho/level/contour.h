@@ -40,8 +40,8 @@ struct ContourExtras {
 std::vector<double> contour_levels(double low, double high, double interval, double base = 0);
 
 /// Lines of all `levels` (ascending, different, finite). Throws BadInput for a tolerance that is not positive, and for
-/// levels closer than the surface's quantum. Cost: about 0.1 us a cell and 0.3 us a vertex; 16 bytes a cell and 48 a
-/// vertex. The same bytes from any number of threads.
+/// levels closer than the surface's quantum. Cost: docs/contours.md, "Cost"; it grows with cells and with traced
+/// vertices, memory too. The same bytes from any number of threads.
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context = {}, ContourExtras* extras = nullptr);
 /// The same for a grid that is not needed afterwards: its memory is given back as soon as may be.
