@@ -73,9 +73,6 @@ void run(const Program& program, const Options& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
   check_output(program, options.output, {".retalho", ".ply", ".obj", ".stl", ".glb"}, {options.points});
-  if (options.adaptive && std::filesystem::path(options.output).extension() == ".retalho")
-    throw UsageError("model files hold grids only: write an --adaptive surface as triangles (.ply, .obj, .stl, .glb)",
-                     {}, "--adaptive");
   if (options.adaptive && options.resolution)
     throw UsageError("--adaptive chooses the sizes of tetrahedra itself: leave --resolution out", {}, "--adaptive");
   if (!options.tetrahedra.empty())

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/program.h"
+#include "retalho/core/atomic_file.h"
 #include "tetraquad/shapes.h"
 
 namespace retalho::test {
@@ -53,13 +54,25 @@ TEST(Reconstruct, PointsWithoutNormalsGetThemWithAWarning) {
   EXPECT_EQ(folder.entries(), 4U);
 }
 
-TEST(Reconstruct, AdaptiveSurfacesAreTriangles) {
+TEST(Reconstruct, AdaptiveSurfacesAreModelsAsOthersAre) {
   const ScratchFolder folder;
   folder.put("torus.xyz", xyz_of(torus_points(5000, 7)));
   const Outcome outcome = run(folder, "reconstruct torus.xyz -o torus.ply --adaptive 9000 --smoothness 0.1 --json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["genus"], 1);
-  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o torus.retalho --adaptive 9000").code, 2);
+  ASSERT_EQ(run(folder, "reconstruct torus.xyz -o torus.retalho --adaptive 9000 --smoothness 0.1").code, 0);
+  const Outcome info = run(folder, "info torus.retalho --json");
+  EXPECT_EQ(info.json()["coefficients"], outcome.json()["coefficients"]);
+  // The model's triangles are the surface's, to the byte.
+  ASSERT_EQ(run(folder, "mesh torus.retalho -o again.ply").code, 0);
+  EXPECT_EQ(read_file(folder / "again.ply"), read_file(folder / "torus.ply"));
+  ASSERT_EQ(run(folder, "render torus.retalho -o torus.png --size 200x200 --cut 'x<0' --outlines --jumps").code, 0);
+  // Refined until the points are near enough.
+  const Outcome near =
+      run(folder, "reconstruct torus.xyz -o near.retalho --adaptive 30000 --max-error 0.0005 --smoothness 0.1 --json");
+  ASSERT_EQ(near.code, 0) << near.err;
+  EXPECT_LE(near.json()["residual_quantile"].get<double>(), 0.0005);
+  EXPECT_LT(near.json()["coefficients"].get<int>(), 30000);
   EXPECT_EQ(run(folder, "reconstruct torus.xyz -o other.ply --adaptive 9000 --resolution 9").code, 2);
 }
 

@@ -54,6 +54,7 @@ std::vector<std::string> contents() {
                                                .rows = 4,
                                                .mask = true})));
   all.push_back(encode_content(test::sample_tetraquad()));
+  all.push_back(encode_content(test::sample_adaptive_tetraquad(1)));
   all.push_back(encode_content(test::sample_patches(1)));
   return all;
 }

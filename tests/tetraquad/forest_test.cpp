@@ -115,5 +115,36 @@ TEST(Forest, LocationAgreesWithASearchOfAllLeaves) {
   EXPECT_EQ(forest.locate({NAN, 5, 5}), -1);
 }
 
+TEST(Forest, ComesBackFromItsMarks) {
+  test::Random random(64);
+  const TetForest forest = random_forest(random, 7);
+  const std::vector<std::uint8_t> marks = forest.halved();
+  const TetForest again(forest.cubes(), marks);
+  EXPECT_EQ(again.cubes(), forest.cubes());
+  EXPECT_EQ(again.halved(), marks);
+  const auto a = forest.leaves(), b = again.leaves();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t n = 0; n < a.size(); ++n)
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(forest.vertices()[forest.nodes()[a[n]].corners[i]], again.vertices()[again.nodes()[b[n]].corners[i]]);
+}
+
+TEST(Forest, MarksThatAreNoForestAreRefused) {
+  test::Random random(65);
+  const TetForest forest = random_forest(random, 3);
+  std::vector<std::uint8_t> marks = forest.halved();
+  marks.push_back(0);
+  EXPECT_THROW(TetForest(forest.cubes(), marks), BadInput);
+  marks.resize(marks.size() - 2);
+  EXPECT_THROW(TetForest(forest.cubes(), marks), BadInput);
+  EXPECT_THROW(TetForest({{0, 0, 0}}, std::vector<std::uint8_t>(5, 0)), BadInput);
+  EXPECT_THROW(TetForest({{1, 0, 0}, {0, 0, 0}}, std::vector<std::uint8_t>(12, 0)), BadInput);
+  // One root cut, its neighbours not: a vertex in the middle of their edge.
+  EXPECT_THROW(TetForest({{0, 0, 0}}, std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0}), BadInput);
+  EXPECT_NO_THROW(TetForest({{0, 0, 0}}, std::vector<std::uint8_t>(6, 0)));
+  // Deeper than there is room for.
+  EXPECT_THROW(TetForest({{0, 0, 0}}, std::vector<std::uint8_t>(100, 1)), BadInput);
+}
+
 }  // namespace
 }  // namespace retalho

@@ -122,12 +122,20 @@ std::string find_fault(const TetraQuad& surface) {
   if (!finite(mesh.origin.x) || !finite(mesh.origin.y) || !finite(mesh.origin.z)) return "the origin is not finite";
   if (!(mesh.step > 0) || !finite(mesh.step)) return "the step of the grid is not a positive number";
   if (mesh.tets.empty()) return "no tetrahedra";
-  if (mesh.forest) return "adaptive meshes have no place in the format yet";
   if (surface.quadrics.size() != mesh.lattice.size())
     return fmt::format("{} quadrics for {} vertices", surface.quadrics.size(), mesh.lattice.size());
   for (std::size_t v = 0; v < surface.quadrics.size(); ++v)
     for (const double c : surface.quadrics[v])
       if (!finite(c)) return fmt::format("the quadric of vertex {} is not finite", v);
+  if (mesh.forest) {
+    std::vector<std::uint32_t> leaves;
+    for (const std::uint32_t leaf : mesh.forest->leaves())
+      if (mesh.tet_of_leaf.contains(leaf)) leaves.push_back(leaf);
+    const TetMesh made = make_tet_mesh(mesh.origin, mesh.step, mesh.forest, leaves);
+    if (made.tets != mesh.tets || made.lattice != mesh.lattice || made.tet_of_leaf != mesh.tet_of_leaf)
+      return "its tetrahedra are not leaves of its forest in their order";
+    return {};
+  }
   const TetMesh made = make_tet_mesh(mesh.origin, mesh.step, mesh.split, mesh.places);
   if (made.places != mesh.places || made.tets != mesh.tets || made.lattice != mesh.lattice)
     return "its tetrahedra are not those of its cells";

@@ -46,6 +46,8 @@ std::string encode_content(const Model& model, bool checked) {
           return {fb::Surface::TerrainSurface, encode_terrain(builder, shape, checked).Union()};
         else if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, PatchSet>)
           return {fb::Surface::PatchSetSurface, encode_patches(builder, shape, checked).Union()};
+        else if (shape.mesh.forest)
+          return {fb::Surface::AdaptiveTetraQuadSurface, encode_adaptive(builder, shape, checked).Union()};
         else
           return {fb::Surface::TetraQuadSurface, encode_tetraquad(builder, shape, checked).Union()};
       },
@@ -70,6 +72,8 @@ Model decode_content(std::string_view content, std::string* created_by) {
       return decode_terrain(*file.surface_as_TerrainSurface());
     case fb::Surface::TetraQuadSurface:
       return decode_tetraquad(*file.surface_as_TetraQuadSurface());
+    case fb::Surface::AdaptiveTetraQuadSurface:
+      return decode_adaptive(*file.surface_as_AdaptiveTetraQuadSurface());
     case fb::Surface::PatchSetSurface:
       return decode_patches(*file.surface_as_PatchSetSurface());
     default:

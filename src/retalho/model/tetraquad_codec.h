@@ -11,6 +11,11 @@ namespace retalho {
 flatbuffers::Offset<model_file::TetraQuadSurface> encode_tetraquad(flatbuffers::FlatBufferBuilder& builder,
                                                                    const TetraQuad& surface, bool checked);
 
+/// The same for one on an adaptive mesh.
+flatbuffers::Offset<model_file::AdaptiveTetraQuadSurface> encode_adaptive(flatbuffers::FlatBufferBuilder& builder,
+                                                                          const TetraQuad& surface, bool checked);
+TetraQuad decode_adaptive(const model_file::AdaptiveTetraQuadSurface& table);
+
 /// `table` has passed FlatBuffers' verifier. Throws CannotRead when what it says is no TetraQuad without a fault.
 TetraQuad decode_tetraquad(const model_file::TetraQuadSurface& table);
 

@@ -1,5 +1,7 @@
 #include "retalho/tetraquad/forest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -46,6 +48,59 @@ std::uint32_t TetForest::vertex(const LatticePlace& at) {
   const auto [found, fresh] = number_.try_emplace(key(at), static_cast<std::uint32_t>(vertices_.size()));
   if (fresh) vertices_.push_back(at);
   return found->second;
+}
+
+TetForest::TetForest(std::vector<LatticePlace> cubes, std::span<const std::uint8_t> halved) {
+  for (std::size_t n = 1; n < cubes.size(); ++n)
+    if (!(cubes[n - 1] < cubes[n])) throw BadInput("the root cubes of an adaptive mesh are out of order");
+  if (halved.size() < 6 * cubes.size()) throw BadInput("an adaptive mesh with fewer marks than roots");
+  *this = TetForest(std::move(cubes));
+  std::size_t at = 0;
+  std::vector<std::uint32_t> stack;
+  for (std::size_t root = 0; root < 6 * root_.size(); ++root) {
+    stack.assign(1, static_cast<std::uint32_t>(root));
+    while (!stack.empty()) {
+      const std::uint32_t n = stack.back();
+      stack.pop_back();
+      if (at == halved.size()) throw BadInput("the marks of an adaptive mesh end inside of a tree");
+      if (halved[at++] == 0) continue;
+      if (nodes_[n].level >= kDeepest) throw BadInput(fmt::format("an adaptive mesh of more than {} levels", kDeepest));
+      bisect_one(n);
+      stack.push_back(static_cast<std::uint32_t>(nodes_[n].child) + 1);
+      stack.push_back(static_cast<std::uint32_t>(nodes_[n].child));
+    }
+  }
+  if (at != halved.size()) throw BadInput("an adaptive mesh with more marks than nodes");
+  for (const Node& node : nodes_)
+    if (node.child < 0 && has_hanging_vertex(node))
+      throw BadInput("the tetrahedra of an adaptive mesh do not fit together");
+}
+
+std::vector<TetForest::LatticePlace> TetForest::cubes() const {
+  std::vector<LatticePlace> found(root_.size());
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    const LatticePlace& corner = vertices_[nodes_[6 * n].corners[0]];  // every path begins at the cube's lowest corner
+    for (std::size_t d = 0; d < 3; ++d) found[n][d] = corner[d] / kUnit;
+  }
+  return found;
+}
+
+std::vector<std::uint8_t> TetForest::halved() const {
+  std::vector<std::uint8_t> marks;
+  marks.reserve(nodes_.size());
+  std::vector<std::uint32_t> stack;
+  for (std::size_t root = 0; root < 6 * root_.size(); ++root) {
+    stack.assign(1, static_cast<std::uint32_t>(root));
+    while (!stack.empty()) {
+      const Node& node = nodes_[stack.back()];
+      stack.pop_back();
+      marks.push_back(node.child < 0 ? 0 : 1);
+      if (node.child < 0) continue;
+      stack.push_back(static_cast<std::uint32_t>(node.child) + 1);
+      stack.push_back(static_cast<std::uint32_t>(node.child));
+    }
+  }
+  return marks;
 }
 
 std::vector<std::uint32_t> TetForest::leaves() const {

@@ -35,10 +35,17 @@ class TetForest {
   TetForest() = default;
   /// Six roots a cube. Doubles are dropped. Throws BadInput for a cube 1000 or more from the origin.
   explicit TetForest(std::vector<LatticePlace> cubes);
+  /// The forest that says `halved()` of itself on these cubes (ascending, each once). Throws BadInput when the marks
+  /// are too few or too many, pass the deepest level, or leave a vertex in the middle of a leaf's edge.
+  TetForest(std::vector<LatticePlace> cubes, std::span<const std::uint8_t> halved);
 
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<LatticePlace>& vertices() const { return vertices_; }
   std::vector<std::uint32_t> leaves() const;  ///< ascending by root, children in order
+  std::vector<LatticePlace> cubes() const;    ///< ascending
+  /// For each node whether it is bisected: 1, or 0 for a leaf; roots ascending, a node before its children. With
+  /// cubes() that is the whole forest, up to the numbers of nodes and vertices.
+  std::vector<std::uint8_t> halved() const;
 
   /// Bisects these leaves (others and those at the deepest level are passed over), then whatever has a vertex in the
   /// middle of one of its edges, until nothing has: the leaves conform again.
