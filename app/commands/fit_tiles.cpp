@@ -12,16 +12,27 @@ namespace retalho::app {
 namespace {
 
 TileOptions options_of(const TileFlags& flags, const BudgetFlags& budget, const SurfaceFlags& surface) {
-  if (!budget.max_error || budget.vertices || !budget.ratio.empty())
+  if ((budget.max_error ? 1 : 0) + (budget.vertices ? 1 : 0) + (budget.ratio.empty() ? 0 : 1) != 1)
+    throw UsageError("--tiles takes one of --max-error E, --vertices N and --ratio R", {}, "--tiles");
+  if (refines_surface(surface, false)) throw UsageError("--tiles takes --refine flat", {}, "--tiles");
+  const FitKind fit = resolve_fit(surface, false);
+  if (fit == FitKind::z_only)
     throw UsageError(
-        "--tiles takes --max-error E and no budget: only then do the vertices on a seam depend on the seam alone", {},
-        "--tiles");
-  if (resolve_fit(surface, false) != FitKind::interpolate || refines_surface(surface, false))
-    throw UsageError("--tiles takes --fit interpolate and --refine flat", {}, "--tiles");
+        "--tiles takes --fit interpolate or least-squares: gradients that follow from fitted heights would "
+        "depend on both sides of a seam",
+        {}, "--tiles");
   const SurfaceOptions resolved = resolve(surface, false);
   if (resolved.gradients != GradientKind::normals || resolved.cross_derivative != CrossDerivative::perpendicular)
     throw UsageError("--tiles takes --gradients normals and --cross-derivative perpendicular", {}, "--tiles");
-  return {*flags.size, *budget.max_error, resolved.surface};
+  TileOptions options;
+  options.size = *flags.size;
+  options.max_error = budget.max_error.value_or(0);
+  if (budget.vertices && *budget.vertices == 0) throw UsageError("--vertices must be 1 or more", {}, "--vertices");
+  options.vertices = budget.vertices.value_or(0);
+  if (!budget.ratio.empty()) options.ratio = parse_ratio("--ratio", budget.ratio);
+  options.surface = resolved.surface;
+  options.fitted = fit == FitKind::least_squares;
+  return options;
 }
 
 }  // namespace
@@ -55,7 +66,9 @@ void fit_tiles(const Program& program, const TileFlags& flags, const std::string
     empty += tile.file.empty() ? 1 : 0;
   }
   const nlohmann::ordered_json json = {{"surface", surface_name(index.surface)},
+                                       {"fit", index.fitted ? "least-squares" : "interpolate"},
                                        {"max_error", index.max_error},
+                                       {"budget", index.budget},
                                        {"tiles", index.tiles.size()},
                                        {"empty_tiles", empty},
                                        {"vertices_of_tiles", vertices},
@@ -65,6 +78,7 @@ void fit_tiles(const Program& program, const TileFlags& flags, const std::string
                                        {"seconds", watch.seconds()}};
   if (program.json) return program.print(json);
   program.print(list_text({{"surface", surface_name(index.surface)},
+                           {"tolerance", fmt::format("{:.6g}", index.max_error)},
                            {"tiles", fmt::format("{} ({} without data)", index.tiles.size(), empty)},
                            {"vertices", fmt::format("{} (those on seams counted in each tile)", vertices)},
                            {"triangles", fmt::format("{}", triangles)},

@@ -22,6 +22,14 @@ from . import Error, TileEntry, TilePlan
 RETRIES = 3  # of a task that raised; a lost worker's tasks run elsewhere without counting
 
 
+def look(plan: TilePlan, row: int, column: int) -> tuple[bool, int, float, float]:
+    return plan.look(row, column)
+
+
+def count(plan: TilePlan, row: int, column: int, max_error: float, areas: list[bool]) -> int:
+    return plan.count(row, column, max_error, areas)
+
+
 def tin_name(plan: TilePlan, row: int, column: int) -> str:
     return plan.tin_name(row, column)
 
@@ -50,6 +58,12 @@ def make_tiles(plan: TilePlan, folder: str, client: Any, *, overwrite: bool = Fa
     def split(chosen: list[tuple[int, int]]) -> tuple[list[int], list[int]]:
         return [row for row, _ in chosen], [column for _, column in chosen]
 
+    if not plan.settled:
+        looks: list[tuple[bool, int, float, float]] = gather(look, *split(places))
+        areas = [plan.areas(looks, row, column) for row, column in places]
+        plan = plan.settle(looks, lambda max_error: sum(
+            gather(count, *split(places), [max_error] * len(places), areas)))
+        plan.check(folder, overwrite=overwrite)
     tins: list[str] = gather(tin_name, *split(places))
     flat, _ = plan.missing(tins, folder)
     if flat:
@@ -80,8 +94,12 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("dem", help="elevation grid: a file or VRT that GDAL reads by windows")
     parser.add_argument("-o", "--output", required=True, help="folder of the tiled model")
     parser.add_argument("--tiles", type=int, default=1024, metavar="N", help="cells from seam to seam (default 1024)")
-    parser.add_argument("--max-error", type=float, required=True, metavar="E", help="height units")
-    parser.add_argument("--surface", default="clough-tocher", choices=["linear", "clough-tocher"])
+    budget = parser.add_mutually_exclusive_group(required=True)
+    budget.add_argument("--max-error", type=float, metavar="E", help="height units")
+    budget.add_argument("--vertices", type=int, metavar="N", help="of the whole model, at most")
+    budget.add_argument("--ratio", type=float, metavar="R", help="vertices as a share of the valid cells: 0.01")
+    parser.add_argument("--surface", default="clough-tocher", choices=["linear", "powell-sabin", "clough-tocher"])
+    parser.add_argument("--fit", default="interpolate", choices=["interpolate", "least-squares"])
     parser.add_argument("--band", type=int, default=1)
     parser.add_argument("--nodata", type=float)
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a running cluster: tcp://head:8786")
@@ -97,8 +115,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"retalho.dask: --workers must be 1 or more, not {options.workers}", file=sys.stderr)
         return 2
     try:
-        plan = TilePlan(options.dem, size=options.tiles, max_error=options.max_error, surface=options.surface,
-                        band=options.band, nodata=options.nodata)
+        plan = TilePlan(options.dem, size=options.tiles, max_error=options.max_error, vertices=options.vertices,
+                        ratio=options.ratio, surface=options.surface, fit=options.fit, band=options.band, nodata=options.nodata)
         plan.check(options.output, overwrite=options.overwrite)
         client = connect(options.scheduler, options.workers)
         try:

@@ -1,10 +1,17 @@
 #include "tiles.h"
 
 #include <fmt/format.h>
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "arrays.h"
@@ -21,14 +28,34 @@ namespace {
 
 SurfaceKind surface_of(const std::string& word) {
   const std::optional<SurfaceKind> kind = parse_surface(word);
-  if (!kind) throw UsageError("surface must be 'linear' or 'clough-tocher', not '" + word + "'", {}, "surface");
+  if (!kind)
+    throw UsageError("surface must be 'linear', 'powell-sabin' or 'clough-tocher', not '" + word + "'", {}, "surface");
   return *kind;
 }
 
-TilePlan plan_of(const py::object& source, int size, double max_error, const std::string& surface, int band,
+bool fitted_of(const std::string& word) {
+  if (word != "interpolate" && word != "least-squares")
+    throw UsageError("fit must be 'interpolate' or 'least-squares', not '" + word + "'", {}, "fit");
+  return word == "least-squares";
+}
+
+TilePlan plan_of(const py::object& source, int size, std::optional<double> max_error, std::optional<double> vertices,
+                 std::optional<double> ratio, const std::string& surface, const std::string& fit, int band,
                  std::optional<double> nodata) {
   const std::string path = path_text(source);
-  const TileOptions options{size, max_error, surface_of(surface)};
+  if ((max_error ? 1 : 0) + (vertices ? 1 : 0) + (ratio ? 1 : 0) != 1)
+    throw UsageError("give one of max_error, vertices and ratio", {}, "max_error");
+  if (vertices && !(*vertices >= 1 && *vertices < 1e15 && *vertices == std::floor(*vertices)))
+    throw UsageError(fmt::format("vertices must be a whole number from 1 up, not {}", *vertices), {}, "vertices");
+  if (ratio && !(*ratio > 0 && *ratio <= 1))
+    throw UsageError(fmt::format("ratio must be in (0, 1], not {}", *ratio), {}, "ratio");
+  TileOptions options;
+  options.size = size;
+  options.max_error = max_error.value_or(0);
+  options.vertices = static_cast<std::size_t>(vertices.value_or(0));
+  options.ratio = ratio.value_or(0);
+  options.surface = surface_of(surface);
+  options.fitted = fitted_of(fit);
   ReadOptions read;
   read.band = band;
   read.nodata = nodata;
@@ -39,14 +66,15 @@ TilePlan plan_of(const py::object& source, int size, double max_error, const std
 py::tuple state_of(const TilePlan& plan) {
   return py::make_tuple(plan.source, plan.read.band,
                         plan.read.nodata ? py::object(py::float_(*plan.read.nodata)) : py::object(py::none()),
-                        index_text(plan.frame));
+                        index_text(plan.frame), plan.ratio);
 }
 
 TilePlan plan_from(const py::tuple& state) {
   ReadOptions read;
   read.band = py::cast<int>(state[1]);
   if (!state[2].is_none()) read.nodata = py::cast<double>(state[2]);
-  return {py::cast<std::string>(state[0]), read, parse_frame(py::cast<std::string>(state[3]))};
+  return {py::cast<std::string>(state[0]), read, parse_frame(py::cast<std::string>(state[3])),
+          py::cast<double>(state[4])};
 }
 
 NeighborNames names_of(const std::vector<std::string>& names) {
@@ -71,11 +99,77 @@ void check_tile(const TilePlan& plan, int row, int column) {
                                  plan.frame.tile_columns()));
 }
 
+/// What is made of an open plan would be of no tolerance at all.
+void check_settled(const TilePlan& plan) {
+  if (plan.open()) throw UsageError("this plan has a budget whose tolerance is not known yet: settle() it, or make()");
+}
+
 std::string repr(const TilePlan& plan) {
   const TiledIndex& f = plan.frame;
-  return fmt::format("<retalho.TilePlan {} x {} cells in {} x {} tiles of {}, {}, tolerance {:.6g}, {}>", f.rows,
-                     f.columns, f.tile_rows(), f.tile_columns(), f.tile_size, surface_name(f.surface), f.max_error,
-                     crs_title(f.georef));
+  const std::string how = plan.ratio > 0 ? fmt::format("{:.6g} of the cells", plan.ratio)
+                          : plan.open()  ? fmt::format("{} vertices", f.budget)
+                                         : fmt::format("tolerance {:.6g}", f.max_error);
+  return fmt::format("<retalho.TilePlan {} x {} cells in {} x {} tiles of {}, {}{}, {}, {}>", f.rows, f.columns,
+                     f.tile_rows(), f.tile_columns(), f.tile_size, surface_name(f.surface),
+                     f.fitted ? " least-squares" : "", how, crs_title(f.georef));
+}
+
+using Look = std::tuple<bool, std::size_t, double, double>;
+std::vector<TileLook> looks_of(const TilePlan& plan, const std::vector<Look>& looks) {
+  if (looks.size() != plan.frame.tile_count())
+    throw UsageError(fmt::format("looks must be of all {} tiles, not {}", plan.frame.tile_count(), looks.size()), {},
+                     "looks");
+  std::vector<TileLook> all;
+  for (const auto& [area, valid, low, high] : looks) all.push_back({area, valid, low, high});
+  return all;
+}
+
+void add_budget(py::class_<TilePlan>& plan) {
+  plan.def_property_readonly(
+      "settled", [](const TilePlan& p) { return !p.open(); },
+      "Is the tolerance known? Of a budget it is found by settle, or within make.");
+  plan.def_property_readonly(
+      "max_error",
+      [](const TilePlan& p) { return p.open() ? py::object(py::none()) : py::object(py::float_(p.frame.max_error)); },
+      "The tolerance, height units; None: not settled yet.");
+  plan.def(
+      "look",
+      [](const TilePlan& p, int row, int column) {
+        check_tile(p, row, column);
+        const TileLook l =
+            run(Running{1}, [&](const Context& context) { return look_at_tile(p, row, column, context); });
+        return Look{l.area, l.valid, l.low, l.high};
+      },
+      py::arg("row"), py::arg("column"),
+      "(has an area with data, valid cells, lowest, highest height) of a tile: what settle needs of each.");
+  plan.def(
+      "areas",
+      [](const TilePlan& p, const std::vector<Look>& looks, int row, int column) {
+        check_tile(p, row, column);
+        const std::array<bool, 9> nine = areas_around(p.frame, looks_of(p, looks), row, column);
+        return std::vector<bool>(nine.begin(), nine.end());
+      },
+      py::arg("looks"), py::arg("row"), py::arg("column"), "Which of the nine tiles round one have an area.");
+  plan.def(
+      "count",
+      [](const TilePlan& p, int row, int column, double max_error, const std::vector<bool>& areas) {
+        check_tile(p, row, column);
+        if (areas.size() != 9) throw UsageError(fmt::format("areas must be nine, not {}", areas.size()), {}, "areas");
+        std::array<bool, 9> nine{};
+        std::copy(areas.begin(), areas.end(), nine.begin());
+        return run(Running{1},
+                   [&](const Context& context) { return count_vertices(p, row, column, max_error, nine, context); });
+      },
+      py::arg("row"), py::arg("column"), py::arg("max_error"), py::arg("areas"),
+      "Vertices of a tile's triangulation to that tolerance, those on seams counted in one tile only.");
+  plan.def(
+      "settle",
+      [](const TilePlan& p, const std::vector<Look>& looks, const std::function<std::size_t(double)>& count) {
+        return p.open() ? settle(p, looks_of(p, looks), count) : p;
+      },
+      py::arg("looks"), py::arg("count"),
+      "The plan with the tolerance that spends its budget. count(max_error): the sum of count over all tiles; it is "
+      "called up to 24 times.");
 }
 
 void add_tasks(py::class_<TilePlan>& plan) {
@@ -90,6 +184,7 @@ void add_tasks(py::class_<TilePlan>& plan) {
       "tin_name",
       [](const TilePlan& p, int row, int column) {
         check_tile(p, row, column);
+        check_settled(p);
         return run(Running{1}, [&](const Context& context) { return tin_name(p, row, column, context); });
       },
       py::arg("row"), py::arg("column"),
@@ -98,6 +193,7 @@ void add_tasks(py::class_<TilePlan>& plan) {
       "make_tin",
       [](const TilePlan& p, int row, int column, const std::string& name, const py::object& folder) {
         check_tile(p, row, column);
+        check_settled(p);
         const std::string path = path_text(folder);
         run(Running{1}, [&](const Context& context) { make_tin(p, row, column, name, path, context); });
       },
@@ -107,6 +203,7 @@ void add_tasks(py::class_<TilePlan>& plan) {
       "make_tile",
       [](const TilePlan& p, int row, int column, const std::vector<std::string>& tins, const py::object& folder) {
         check_tile(p, row, column);
+        check_settled(p);
         const std::string path = path_text(folder);
         const NeighborNames nine = names_of(tins);
         return run(Running{1}, [&](const Context& context) { return make_tile(p, row, column, nine, path, context); });
@@ -140,6 +237,7 @@ void add_tasks(py::class_<TilePlan>& plan) {
       "finish",
       [](const TilePlan& p, std::vector<TileEntry> entries, const std::vector<std::string>& tins,
          const py::object& folder, bool overwrite) {
+        check_settled(p);
         const std::string path = path_text(folder);
         const std::vector<std::string> all = tins_of(p, tins);
         run(Running{1}, [&](const Context&) { finish_tiles(p, std::move(entries), all, path, overwrite); });
@@ -199,16 +297,20 @@ void add_tiles(py::module_& module) {
   py::class_<TilePlan> plan(module, "TilePlan",
                             "How a grid that does not fit into memory is cut into tiles and fitted (docs/tiles.md).\n\n"
                             "source: a file or VRT that GDAL reads by windows. size: cells from seam to seam, 16 to "
-                            "16,384. max_error: of the flat triangulation at every valid cell, height units. surface: "
-                            "linear or clough-tocher. Plans can be pickled.");
-  plan.def(py::init(&plan_of), py::arg("source"), py::kw_only(), py::arg("size") = 1024, py::arg("max_error"),
-           py::arg("surface") = "clough-tocher", py::arg("band") = 1, py::arg("nodata") = py::none());
+                            "16,384. one of max_error (of the flat triangulation at every valid cell, height "
+                            "units), vertices and ratio (of the valid cells). surface: linear, powell-sabin or "
+                            "clough-tocher. fit: interpolate or least-squares. Plans can be pickled.");
+  plan.def(py::init(&plan_of), py::arg("source"), py::kw_only(), py::arg("size") = 1024,
+           py::arg("max_error") = py::none(), py::arg("vertices") = py::none(), py::arg("ratio") = py::none(),
+           py::arg("surface") = "clough-tocher", py::arg("fit") = "interpolate", py::arg("band") = 1,
+           py::arg("nodata") = py::none());
   plan.def_property_readonly(
       "shape", [](const TilePlan& p) { return py::make_tuple(p.frame.rows, p.frame.columns); },
       "(rows, columns) of the grid.");
   plan.def_property_readonly(
       "tiles", [](const TilePlan& p) { return py::make_tuple(p.frame.tile_rows(), p.frame.tile_columns()); },
       "(rows, columns) of tiles.");
+  add_budget(plan);
   add_tasks(plan);
   plan.def("__repr__", &repr);
   plan.def(py::pickle(&state_of, &plan_from));

@@ -37,6 +37,29 @@ TEST(FitTiles, EveryCommandTakesTheFolder) {
   for (std::size_t i = 0; i < dem.cells(); ++i) ASSERT_NEAR(sampled.at(i), dem.at(i), 3.001);
 }
 
+TEST(FitTiles, BudgetsSurfacesAndFits) {
+  const Tiles folder;
+  for (const char* surface : {"linear", "powell-sabin", "clough-tocher"})
+    for (const char* fit : {"interpolate", "least-squares"}) {
+      const Outcome made = run(folder, fmt::format("fit dem.asc -o m --tiles 32 --vertices 400 --surface {} --fit {} "
+                                                   "--overwrite --json",
+                                                   surface, fit));
+      ASSERT_EQ(made.code, 0) << made.err;
+      EXPECT_EQ(made.json()["budget"], 400);
+      EXPECT_EQ(made.json()["fit"], fit);
+      const Outcome compared = run(folder, "compare dem.asc m --json");
+      ASSERT_EQ(compared.code, 0) << compared.err;
+      const auto model = compared.json()["models"][0];
+      EXPECT_LE(model["vertices"].get<int>(), 400);
+      EXPECT_GE(model["vertices"].get<int>(), 380);
+      EXPECT_EQ(model["surface"], surface);
+      EXPECT_LT(model["rmse"].get<double>(), 5);
+    }
+  const Outcome ratio = run(folder, "fit dem.asc -o r --tiles 32 --ratio 5% --json");
+  ASSERT_EQ(ratio.code, 0) << ratio.err;
+  EXPECT_EQ(ratio.json()["budget"], 315);
+}
+
 TEST(Sample, CloudOptimisedGeoTiff) {
   const Tiles folder;
   ASSERT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 -q").code, 0);
@@ -80,10 +103,10 @@ TEST(FitTiles, WhatIsRefused) {
   folder.put("file", "x");
   folder.put("grid.pgm", "P2\n3 3\n9\n1 2 3 4 5 6 7 8 9\n");
   for (const char* options :
-       {"--tiles 32", "--tiles 32 --vertices 100", "--tiles 32 --max-error 1 --ratio 1%", "--tiles 3 --max-error 1",
-        "--tiles 32 --max-error 1 --surface powell-sabin", "--tiles 32 --max-error 1 --gradients network",
-        "--tiles 32 --max-error 1 --fit least-squares", "--tiles 32 --max-error 1 --refine surface",
-        "--jobs 2 --max-error 1", "--tiles 32 --max-error 1 --jobs -1"})
+       {"--tiles 32", "--tiles 32 --vertices 5", "--tiles 32 --max-error 1 --ratio 1%", "--tiles 3 --max-error 1",
+        "--tiles 32 --max-error 1 --gradients network", "--tiles 32 --max-error 1 --fit z-only",
+        "--tiles 32 --vertices 0", "--tiles 32 --max-error 1 --refine surface", "--jobs 2 --max-error 1",
+        "--tiles 32 --max-error 1 --jobs -1"})
     EXPECT_EQ(run(folder, std::string("fit dem.asc -o m ") + options).code, 2) << options;
   EXPECT_EQ(run(folder, "fit points.xyz -o m --tiles 32 --max-error 1").code, 2);
   EXPECT_EQ(run(folder, "fit grid.pgm -o m --tiles 32 --max-error 1").code, 3);

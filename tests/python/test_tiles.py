@@ -79,11 +79,44 @@ def test_tasks_and_jobs_and_the_program_make_the_same_bytes(
     assert digest(tmp_path / "cli") == digest(folder)
 
 
+def test_budgets_and_fits_by_tasks_and_jobs(dem: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    places = [(r, c) for r in range(3) for c in range(4)]
+    for surface in ("powell-sabin", "clough-tocher"):
+        plan = retalho.TilePlan(dem, size=40, ratio=0.08, surface=surface, fit="least-squares")  # type: ignore[arg-type]
+        assert not plan.settled and plan.max_error is None and "0.08 of the cells" in repr(plan)
+        with pytest.raises(ValueError, match="settle"):
+            plan.tin_name(0, 0)
+        plan = pickle.loads(pickle.dumps(plan))
+        looks = [plan.look(r, c) for r, c in places]
+        assert sum(look[1] for look in looks) == np.isfinite(retalho.read_grid(dem).heights).sum()
+        asked: list[float] = []
+
+        def count(max_error: float) -> int:
+            asked.append(max_error)
+            return sum(plan.count(r, c, max_error, plan.areas(looks, r, c)) for r, c in places)
+
+        settled = plan.settle(looks, count)
+        assert settled.settled and settled.max_error in asked and len(asked) <= 25
+        settled.make(tmp_path / surface)
+        plan.make(tmp_path / (surface + "2"), jobs=2)
+        assert digest(tmp_path / surface) == digest(tmp_path / (surface + "2"))
+        model = retalho.load(tmp_path / surface)
+        assert isinstance(model, retalho.Terrain) and model.surface == surface and model.gradients == "fitted"
+        budget = round(0.08 * sum(look[1] for look in looks))
+        assert 0.95 * budget <= len(model.vertices) <= budget
+        assert count(settled.max_error or 0) == len(model.vertices)
+
+
 def test_what_is_refused(dem: pathlib.Path, tmp_path: pathlib.Path) -> None:
     with pytest.raises(ValueError, match="16 to 16384, not 5|16 to 16,384|not 5"):
         retalho.TilePlan(dem, size=5, max_error=1)
     with pytest.raises(ValueError, match="surface"):
         retalho.TilePlan(dem, max_error=1, surface="cubic")  # type: ignore[arg-type]
+    for wrong in ({}, {"max_error": 1.0, "vertices": 50}, {"vertices": 0}, {"ratio": 1.5}, {"max_error": -1.0}):
+        with pytest.raises(ValueError):
+            retalho.TilePlan(dem, size=40, **wrong)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="fit"):
+        retalho.TilePlan(dem, max_error=1, fit="z-only")  # type: ignore[arg-type]
     with pytest.raises(OSError):
         retalho.TilePlan(tmp_path / "nothing.tif", max_error=1)
     plan = retalho.TilePlan(dem, size=40, max_error=1)
@@ -225,6 +258,11 @@ def test_dask_on_this_machine(dem: pathlib.Path, tmp_path: pathlib.Path) -> None
     subprocess.run(command, check=True, capture_output=True)
     retalho.TilePlan(dem, size=40, max_error=1.0).make(tmp_path / "m")
     assert digest(tmp_path / "d") == digest(tmp_path / "m")
+    budget = [*command[:4], "-o", str(tmp_path / "b"), "--tiles", "40", "--vertices", "700", "--workers", "2", "--fit",
+              "least-squares", "--surface", "powell-sabin"]
+    subprocess.run(budget, check=True, capture_output=True)
+    retalho.TilePlan(dem, size=40, vertices=700, fit="least-squares", surface="powell-sabin").make(tmp_path / "n")
+    assert digest(tmp_path / "b") == digest(tmp_path / "n")
     again = subprocess.run(command, capture_output=True)
     assert again.returncode == 0, "nothing is left to do"
     command[command.index("1")] = "2"  # another tolerance

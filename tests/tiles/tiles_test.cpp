@@ -1,10 +1,13 @@
 // Tiled models: tiles agree along their seams to the last bit, whoever made them, and join to one surface.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <ostream>
 #include <utility>
 
 #include "retalho/core/atomic_file.h"
@@ -15,6 +18,7 @@
 #include "retalho/model/tiled.h"
 #include "retalho/raster/io.h"
 #include "retalho/terrain/evaluate.h"
+#include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
 #include "retalho/tiles/make.h"
 #include "support/support.h"
@@ -50,9 +54,10 @@ struct Made {
   std::string dem = (folder.path() / "dem.tif").string(), tiles = (folder.path() / "tiles").string();
   TilePlan plan;
 
-  explicit Made(bool voids, SurfaceKind surface = SurfaceKind::clough_tocher, double max_error = 1.5) {
+  explicit Made(bool voids, SurfaceKind surface = SurfaceKind::clough_tocher, double max_error = 1.5,
+                bool fitted = false) {
     write_raster(hills(131, 98, voids), dem);
-    plan = plan_tiles(dem, {.size = 40, .max_error = max_error, .surface = surface});
+    plan = plan_tiles(dem, {.size = 40, .max_error = max_error, .surface = surface, .fitted = fitted});
   }
 };
 
@@ -75,11 +80,25 @@ Vertices vertices_of(const TiledIndex& index, const TileEntry& entry, const Terr
   return all;
 }
 
-class Seams : public ::testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Voids, Seams, ::testing::Bool());
+struct Case {
+  bool voids;
+  SurfaceKind surface;
+  bool fitted;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << surface_name(c.surface) << (c.fitted ? " fitted" : "") << (c.voids ? " with voids" : "");
+}
+
+class Seams : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Seams,
+    ::testing::Values(Case{false, SurfaceKind::clough_tocher, false}, Case{true, SurfaceKind::clough_tocher, false},
+                      Case{false, SurfaceKind::powell_sabin, false}, Case{true, SurfaceKind::powell_sabin, false},
+                      Case{false, SurfaceKind::clough_tocher, true}, Case{true, SurfaceKind::clough_tocher, true},
+                      Case{false, SurfaceKind::powell_sabin, true}, Case{true, SurfaceKind::powell_sabin, true}));
 
 TEST_P(Seams, HaveTheSameVerticesHeightsAndGradients) {
-  const Made made(GetParam());
+  const Made made(GetParam().voids, GetParam().surface, 1.5, GetParam().fitted);
   const TiledIndex index = make_tiles(made.plan, made.tiles, 2, false);
   ASSERT_EQ(index.tile_columns(), 4);
   ASSERT_EQ(index.tile_rows(), 3);
@@ -112,7 +131,7 @@ TEST_P(Seams, HaveTheSameVerticesHeightsAndGradients) {
 }
 
 TEST_P(Seams, AreSmooth) {
-  const Made made(GetParam());
+  const Made made(GetParam().voids, GetParam().surface, 1.5, GetParam().fitted);
   const TiledIndex index = make_tiles(made.plan, made.tiles, 1, false);
   std::vector<Terrain> tiles;
   for (const TileEntry& entry : index.tiles) tiles.push_back(load_tile(index, entry, made.tiles));
@@ -137,7 +156,10 @@ TEST_P(Seams, AreSmooth) {
   EXPECT_LT(largest, 1e-9);
 }
 
-TEST_P(Seams, JoinToOneTerrainWithinTheTolerance) {
+class Joined : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Voids, Joined, ::testing::Bool());
+
+TEST_P(Joined, TilesAreOneTerrainWithinTheTolerance) {
   const Made made(GetParam(), SurfaceKind::linear);
   make_tiles(made.plan, made.tiles, 3, false);
   const auto whole = std::get<Terrain>(load_model(made.tiles));
@@ -149,6 +171,103 @@ TEST_P(Seams, JoinToOneTerrainWithinTheTolerance) {
   EXPECT_GT(report.max_error, 1.0) << "not degenerate";
   EXPECT_TRUE(check_mesh(mesh_terrain(whole, {.tolerance = 1})).watertight());
   save_model(whole, (made.folder.path() / "one.retalho").string());  // which checks it
+}
+
+/// All patches of tiles in the whole grid's coordinates: what a reader of one tile or of two computes on a seam.
+TEST_P(Seams, HaveTheSamePolynomialsToTheLastBitInTheWholeGrid) {
+  const Made made(GetParam().voids, GetParam().surface, 1.5, GetParam().fitted);
+  make_tiles(made.plan, made.tiles, 2, false);
+  const auto whole = std::get<Terrain>(load_model(made.tiles));
+  const EdgeTable edges = build_edges(whole.tin);
+  const double seam = 40 * 7.3;
+  std::size_t compared = 0;
+  for (std::size_t e = 0; e < edges.vertices.size(); ++e) {
+    const auto [a, b] = edges.vertices[e];
+    if (whole.tin.points[a].x != seam || whole.tin.points[b].x != seam || edges.triangles[e][1] == kNone) continue;
+    // The edge's own ordinates in both triangles' pieces, by where they lie.
+    std::array<std::vector<double>, 2> ordinates;
+    for (const std::size_t side : {0U, 1U}) {
+      std::array<TerrainPatch, 6> patches;
+      const int count = triangle_patches(whole, edges, edges.triangles[e][side], patches);
+      for (int k = 0; k < count; ++k) {
+        const TerrainPatch& p = patches[static_cast<std::size_t>(k)];
+        for (int i = p.degree; i >= 0; --i)
+          for (int j = p.degree - i; j >= 0; --j) {
+            const int l = p.degree - i - j;
+            const auto& c = p.corners;
+            const auto on = [&](int n, std::size_t corner) { return n == 0 || c[corner].x == seam; };
+            if (on(i, 0) && on(j, 1) && on(l, 2))
+              ordinates[side].push_back(p.ordinates[static_cast<std::size_t>(ordinate_index(p.degree, i, j))]);
+          }
+      }
+      std::sort(ordinates[side].begin(), ordinates[side].end());
+    }
+    ASSERT_GE(ordinates[0].size(), 4U);
+    EXPECT_EQ(ordinates[0], ordinates[1]);
+    ++compared;
+  }
+  EXPECT_GT(compared, 8U);
+}
+
+/// Squares of the errors at all cells and on seams, from one model of the grid on the same triangulation.
+TEST(Tiles, FittedOnesAreAsGoodAsOneFitOfTheWhole) {
+  for (const SurfaceKind surface : {SurfaceKind::linear, SurfaceKind::clough_tocher, SurfaceKind::powell_sabin}) {
+    const Made plain(false, surface, 4), made(false, surface, 4, true);
+    make_tiles(plain.plan, plain.tiles, 2, false);
+    make_tiles(made.plan, made.tiles, 2, false);
+    const Raster raster = read_raster(made.dem);
+    const auto start = std::get<Terrain>(load_model(plain.tiles)), tiled = std::get<Terrain>(load_model(made.tiles));
+    const Terrain whole = fit_least_squares(start, raster);
+    const double before = assess(start, raster).rmse, best = assess(whole, raster).rmse,
+                 got = assess(tiled, raster).rmse;
+    EXPECT_LT(best, 0.8 * before) << "not degenerate";
+    EXPECT_LT(got, best + 0.02 * (before - best)) << surface_name(surface);
+    double largest = 0;  // of the data: how far the strips' cut is felt
+    for (std::size_t v = 0; v < whole.tin.vertex_count(); ++v)
+      largest = std::max(largest, std::abs(whole.tin.heights[v] - tiled.tin.heights[v]));
+    EXPECT_LT(largest, 0.5 * before) << surface_name(surface);
+    EXPECT_GT(largest, 0) << "the strips are not the whole";
+  }
+}
+
+TEST(Tiles, ABudgetIsSpentAndNotPassed) {
+  for (const bool voids : {false, true}) {
+    const Made made(voids);
+    const std::size_t valid = valid_mask(hills(131, 98, voids)).count();
+    for (const auto& [vertices, ratio] : {std::pair<std::size_t, double>{400, 0}, {3000, 0}, {0, 0.1}}) {
+      TileOptions options;
+      options.size = 40;
+      options.vertices = vertices;
+      options.ratio = ratio;
+      const TilePlan plan = plan_tiles(made.dem, options);
+      const std::string name = std::to_string(vertices), two = (made.folder.path() / (name + "b")).string();
+      const TiledIndex index = make_tiles(plan, (made.folder.path() / name).string(), 1, false);
+      const auto whole = std::get<Terrain>(load_model((made.folder.path() / name).string()));
+      const std::size_t budget =
+          vertices > 0 ? vertices : static_cast<std::size_t>(std::llround(ratio * static_cast<double>(valid)));
+      EXPECT_EQ(index.budget, budget);
+      EXPECT_LE(whole.tin.vertex_count(), budget);
+      EXPECT_GE(whole.tin.vertex_count(), budget * 95 / 100) << "voids " << voids;
+      make_tiles(plan, two, 3, false);
+      EXPECT_EQ(contents(two), contents((made.folder.path() / name).string()));
+      EXPECT_NO_THROW(make_tiles(plan, two, 2, false)) << "nothing is left to do";
+      options.vertices = options.vertices == 0 ? 0 : options.vertices + 1;
+      if (options.vertices != 0) {
+        EXPECT_THROW(make_tiles(plan_tiles(made.dem, options), two, 2, false), CannotWrite);
+      }
+      fs::remove_all(two);
+      fs::remove_all(made.folder.path() / name);
+    }
+    TileOptions tiny;
+    tiny.size = 40;
+    tiny.vertices = 10;
+    EXPECT_THROW(make_tiles(plan_tiles(made.dem, tiny), made.tiles, 1, false), UsageError);
+    TileOptions all;
+    all.size = 40;
+    all.ratio = 1;
+    make_tiles(plan_tiles(made.dem, all), made.tiles, 2, false);
+    EXPECT_LE(std::get<Terrain>(load_model(made.tiles)).tin.vertex_count(), valid);
+  }
 }
 
 TEST(Tiles, ContoursCrossSeams) {
@@ -170,15 +289,18 @@ TEST(Tiles, ContoursCrossSeams) {
 }
 
 TEST(Tiles, AreTheSameBytesWhoeverMakesThem) {
-  const Made made(true);
-  make_tiles(made.plan, made.tiles, 1, false, {.threads = 1});
-  const auto expected = contents(made.tiles);
-  ASSERT_EQ(expected.size(), 13U) << "twelve tiles and the index";
-  for (const int jobs : {2, 5}) {
-    const std::string other = (made.folder.path() / std::to_string(jobs)).string();
-    make_tiles(made.plan, other, jobs, false);
-    EXPECT_EQ(contents(other), expected) << jobs << " jobs";
-  }
+  for (const SurfaceKind surface : {SurfaceKind::clough_tocher, SurfaceKind::powell_sabin})
+    for (const bool fitted : {false, true}) {
+      const Made made(true, surface, 1.5, fitted);
+      make_tiles(made.plan, made.tiles, 1, false, {.threads = 1});
+      const auto expected = contents(made.tiles);
+      ASSERT_EQ(expected.size(), 13U) << "twelve tiles and the index";
+      for (const int jobs : {1, 2, 5}) {
+        const std::string other = (made.folder.path() / std::to_string(jobs)).string();
+        make_tiles(made.plan, other, jobs, false);
+        EXPECT_EQ(contents(other), expected) << jobs << " jobs";
+      }
+    }
 }
 
 TEST(Tiles, ARunGoesOnWhereItWas) {
@@ -285,7 +407,8 @@ TEST(Tiles, WhatIsRefused) {
   const Made made(false);
   EXPECT_THROW(plan_tiles(made.dem, {.size = 15, .max_error = 1}), UsageError);
   EXPECT_THROW(plan_tiles(made.dem, {.size = 40, .max_error = -1}), UsageError);
-  EXPECT_THROW(plan_tiles(made.dem, {.size = 40, .max_error = 1, .surface = SurfaceKind::powell_sabin}), UsageError);
+  EXPECT_THROW(plan_tiles(made.dem, {.size = 40, .max_error = 1, .vertices = 100}), UsageError);
+  EXPECT_THROW(plan_tiles(made.dem, {.size = 40, .ratio = 1.5}), UsageError);
   EXPECT_THROW(plan_tiles(made.dem + "x", {.size = 40, .max_error = 1}), CannotRead);
   EXPECT_THROW(make_tiles(made.plan, made.tiles, -1, false), UsageError);
   EXPECT_THROW(make_tiles(made.plan, made.dem + "/below", 1, false), CannotWrite);

@@ -58,6 +58,7 @@ class Joiner {
       number[v] = vertex(row, column, seam, tile.tin.heights[v], gradient, smooth, file);
     }
     for (const auto& t : tile.tin.triangles) whole_.tin.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+    if (!tile.edge_split.empty()) add_splits(tile, number, file);
     for (int r = 0; r < w.rows; ++r)
       for (int c = 0; c < w.columns; ++c)
         if (tile.grid.valid.empty() || tile.grid.valid.get(c, r)) whole_.grid.valid.set(w.column + c, w.row + r, true);
@@ -67,10 +68,32 @@ class Joiner {
     if (whole_.grid.valid.count() == static_cast<std::size_t>(index_.columns) * static_cast<std::size_t>(index_.rows))
       whole_.grid.valid = {};
     build_neighbors(whole_.tin);
+    if (whole_.kind == SurfaceKind::powell_sabin)
+      for (const auto& [a, b] : build_edges(whole_.tin).vertices)
+        whole_.edge_split.push_back(splits_.at(edge_key(a, b)));
     return std::move(whole_);
   }
 
  private:
+  static std::uint64_t edge_key(std::uint32_t low, std::uint32_t high) {
+    return (static_cast<std::uint64_t>(low) << 32) | high;
+  }
+
+  /// Splits are counted from the end with the lower number, and the numbers are others here.
+  void add_splits(const Terrain& tile, const std::vector<std::uint32_t>& number, const std::string& file) {
+    const EdgeTable edges = build_edges(tile.tin);
+    for (std::size_t e = 0; e < edges.vertices.size(); ++e) {
+      const std::uint32_t a = number[edges.vertices[e][0]], b = number[edges.vertices[e][1]];
+      const double split = a < b ? tile.edge_split[e] : 1 - tile.edge_split[e];
+      const auto [found, made] = splits_.emplace(edge_key(std::min(a, b), std::max(a, b)), split);
+      if (!made && !same_bits(found->second, split))
+        throw CannotRead(fmt::format("'{}' and its neighbour split an edge of their seam in two ways: make the tiled "
+                                     "model again (retalho fit --tiles)",
+                                     file),
+                         file);
+    }
+  }
+
   std::uint32_t vertex(long long row, long long column, bool seam, double height, Vec2 gradient, bool smooth,
                        const std::string& file) {
     const auto next = static_cast<std::uint32_t>(whole_.tin.points.size());
@@ -97,6 +120,7 @@ class Joiner {
   const TiledIndex& index_;
   Terrain whole_;
   std::unordered_map<std::uint64_t, std::uint32_t> on_seams_;
+  std::unordered_map<std::uint64_t, double> splits_;  // Powell-Sabin: of edges, from the lower number
 };
 
 }  // namespace

@@ -30,7 +30,9 @@ struct TiledIndex {
   Georef georef;
   int tile_size = 0;  ///< cells from seam to seam
   SurfaceKind surface = SurfaceKind::clough_tocher;
-  double max_error = 0;
+  double max_error = 0;          ///< of the flat triangulation at every valid cell
+  bool fitted = false;           ///< heights and gradients by least squares (else interpolated)
+  std::size_t budget = 0;        ///< the vertices that were asked for, of which max_error follows; 0: none
   std::vector<TileEntry> tiles;  ///< row by row
 
   int tile_columns() const { return (columns - 2) / tile_size + 1; }

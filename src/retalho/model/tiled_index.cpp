@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "retalho-tiles";
 constexpr int kVersion = 1;
+constexpr const char *kInterpolated = "interpolate", *kFitted = "least-squares";
 constexpr int kMostCells = 1 << 30;  // a side
 
 Json json_of(const TileEntry& tile, const TiledIndex& index) {
@@ -80,21 +81,24 @@ void check_tiles(const TiledIndex& index, const std::string& file) {
 
 std::string index_text(const TiledIndex& index) {
   const Georef& g = index.georef;
-  Json json = {
-      {"format", kFormat},
-      {"version", kVersion},
-      {"grid",
-       {{"columns", index.columns},
-        {"rows", index.rows},
-        {"cell_width", index.cell_width},
-        {"cell_height", index.cell_height},
-        {"origin", {g.origin_x, g.origin_y}},
-        {"scale", {g.scale_x, g.scale_y}},
-        {"unit", g.unit},
-        {"geographic", g.geographic},
-        {"crs", g.crs_wkt}}},
-      {"parameters",
-       {{"tile_size", index.tile_size}, {"surface", surface_name(index.surface)}, {"max_error", index.max_error}}}};
+  Json json = {{"format", kFormat},
+               {"version", kVersion},
+               {"grid",
+                {{"columns", index.columns},
+                 {"rows", index.rows},
+                 {"cell_width", index.cell_width},
+                 {"cell_height", index.cell_height},
+                 {"origin", {g.origin_x, g.origin_y}},
+                 {"scale", {g.scale_x, g.scale_y}},
+                 {"unit", g.unit},
+                 {"geographic", g.geographic},
+                 {"crs", g.crs_wkt}}},
+               {"parameters",
+                {{"tile_size", index.tile_size},
+                 {"surface", surface_name(index.surface)},
+                 {"fit", index.fitted ? kFitted : kInterpolated},
+                 {"max_error", index.max_error},
+                 {"budget", index.budget}}}};
   json["tiles"] = Json::array();
   for (const TileEntry& tile : index.tiles) json["tiles"].push_back(json_of(tile, index));
   return json.dump(1) + "\n";
@@ -126,6 +130,11 @@ TiledIndex parse_frame(std::string_view text, const std::string& file) {
     if (!surface) refuse(file, "an unknown kind of surface");
     index.surface = *surface;
     index.max_error = parameters.at("max_error").get<double>();
+    // What folders made before these words existed are.
+    const auto fit = parameters.value("fit", std::string(kInterpolated));
+    if (fit != kInterpolated && fit != kFitted) refuse(file, fmt::format("an unknown fit '{}'", fit));
+    index.fitted = fit == kFitted;
+    index.budget = parameters.value("budget", std::size_t{0});
     for (const Json& tile : json.at("tiles")) index.tiles.push_back(entry_of(tile, file));
   } catch (const nlohmann::json::exception& error) {
     refuse(file, error.what());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/fit_system.h"
@@ -15,6 +17,11 @@ void check(const Terrain& terrain, const Raster& raster, const LeastSquaresOptio
       std::isinf(options.fairness))
     throw UsageError(fmt::format("the weights of a fit must be 0 or more, not {} (slopes) and {} (fairness)",
                                  options.slope_weight, options.fairness));
+  if (!options.held.empty() && options.held.size() != terrain.tin.vertex_count())
+    throw UsageError(
+        fmt::format("{} marks of held vertices for {} vertices", options.held.size(), terrain.tin.vertex_count()));
+  if (!options.held.empty() && options.heights_only)
+    throw UsageError("gradients that follow from the heights cannot be held: heights_only takes no held vertices");
   const GridDomain& grid = terrain.grid;
   if (grid.columns != raster.columns || grid.rows != raster.rows || grid.cell_width != raster.cell_width ||
       grid.cell_height != raster.cell_height)
@@ -59,6 +66,9 @@ class Fit {
     FitSolveOptions solve;
     solve.limits = {options_.tolerance, options_.iterations};
     solve.heights_only = options_.heights_only;
+    std::vector<std::uint8_t> pinned(options_.held.begin(), options_.held.end());
+    for (std::uint8_t& mark : pinned) mark = mark != 0 ? kHeldHeight | kHeldGradient : 0;
+    solve.pinned = pinned;
     const int iterations = solve_fit(terrain_.kind, tin.triangles, elements, points_, data_, solve, context_);
     store();
     context_.report("fit", 1);
@@ -78,14 +88,17 @@ class Fit {
   }
 
   void store() {
-    for (std::size_t v = 0; v < data_.size(); ++v) terrain_.tin.heights[v] = data_[v].x + grid_.reference;
+    const auto held = [&](std::size_t v) { return !options_.held.empty() && options_.held[v] != 0; };
+    for (std::size_t v = 0; v < data_.size(); ++v)
+      if (!held(v)) terrain_.tin.heights[v] = data_[v].x + grid_.reference;
     if (terrain_.kind == SurfaceKind::linear) return;
     if (options_.heights_only) {
       terrain_.gradients = estimate_gradients(terrain_.tin, build_edges(terrain_.tin), GradientKind::normals, context_);
       terrain_.gradient_kind = GradientKind::normals;
       return;
     }
-    for (std::size_t v = 0; v < data_.size(); ++v) terrain_.gradients[v] = Vec2{data_[v].y, data_[v].z} / grid_.unit;
+    for (std::size_t v = 0; v < data_.size(); ++v)
+      if (!held(v)) terrain_.gradients[v] = Vec2{data_[v].y, data_[v].z} / grid_.unit;
     terrain_.gradient_kind = GradientKind::fitted;
   }
 

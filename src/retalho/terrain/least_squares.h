@@ -8,6 +8,9 @@
 // gradients; no row a cell is stored (docs/algorithms/smooth-fit.md).
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "retalho/core/context.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/terrain.h"
@@ -21,6 +24,8 @@ struct LeastSquaresOptions {
   double fairness = 1e-5;     ///< 0 or more; not used by linear surfaces
   double tolerance = 1e-7;    ///< where conjugate gradients stop, relative
   int iterations = 1000;      ///< and after how many steps at most
+  /// One mark a vertex: 1: its height and gradient stay, to the last bit. Empty: none does. Not with heights_only.
+  std::span<const std::uint8_t> held = {};
 };
 
 struct LeastSquaresNotes {
@@ -31,7 +36,8 @@ struct LeastSquaresNotes {
 /// heights_only, heights whose gradients are GradientKind::normals of them. The triangulation stays as it is. Vertices
 /// that no cell speaks for stay where they are. The result is finite, never worse by the objective than the start, and
 /// the same from any number of threads. `terrain` must have been made from `raster` (same cells), on a TIN with a
-/// convex outline, as refine_tin makes it. Throws UsageError for negative weights, BadInput for another grid, or for
+/// convex outline, as refine_tin makes it, or a part of such a TIN (then some cells on its inner outline count in no
+/// triangle). Throws UsageError for negative weights or marks of another number, BadInput for another grid, or for
 /// the cubic rule of Clough-Tocher, whose pieces depend on more than their own triangle's corners. Cost: about 0.3 us a
 /// cell and 20 us a vertex on one thread; memory: 8 bytes a cell and about 2 kB a vertex.
 Terrain fit_least_squares(Terrain terrain, const Raster& raster, const LeastSquaresOptions& options = {},

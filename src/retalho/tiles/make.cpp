@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/terrain/least_squares.h"
 #include "retalho/tiles/jobs.h"
 #include "retalho/tiles/seam.h"
+#include "retalho/tiles/strips.h"
 #include "retalho/tin/refine.h"
 
 namespace retalho {
@@ -54,28 +58,52 @@ int column_of(const TiledIndex& frame, std::size_t place) {
   return static_cast<int>(place % static_cast<std::size_t>(frame.tile_columns()));
 }
 
+/// Puts the fitted data of the border in their places, and fits the rest of the tile to its cells.
+Terrain fitted(const TilePlan& plan, int tile_row, int tile_column, Terrain terrain, const TilesAround& tiles,
+               const Context& context) {
+  const auto border = fit_seams(plan, tiles, context);
+  std::vector<std::uint8_t> held(terrain.tin.vertex_count(), 0);
+  for (std::uint32_t v = 0; v < held.size(); ++v) {
+    const PlacedTin self{tiles[4].cells, &terrain.tin};
+    const auto found = border.find(cell_of(plan.frame, self, v).key());
+    if (found == border.end()) continue;
+    held[v] = 1;
+    terrain.tin.heights[v] = found->second.height;
+    if (!terrain.gradients.empty()) terrain.gradients[v] = found->second.gradient;
+  }
+  LeastSquaresOptions options;
+  options.held = held;
+  return fit_least_squares(std::move(terrain), read_tile(plan, tile_row, tile_column, context), options, context);
+}
+
 Terrain surface_of(const TilePlan& plan, int tile_row, int tile_column, const NeighborNames& tins,
                    const std::string& folder, const Context& context) {
   Terrain flat = load_tin(folder, tins[4]);
-  if (plan.frame.surface == SurfaceKind::linear) return flat;
-  std::vector<Terrain> around;
-  std::vector<CellWindow> windows;
-  for (int k = 0; k < 9; ++k) {
-    if (k == 4 || tins[static_cast<std::size_t>(k)].empty()) continue;
-    around.push_back(load_tin(folder, tins[static_cast<std::size_t>(k)]));
-    windows.push_back(plan.frame.window(tile_row - 1 + k / 3, tile_column - 1 + k % 3));
+  if (plan.frame.surface == SurfaceKind::linear && !plan.frame.fitted) return flat;
+  std::array<Terrain, 9> around;
+  TilesAround tiles;
+  for (std::size_t k = 0; k < 9; ++k) {
+    if (tins[k].empty()) continue;
+    tiles[k].cells =
+        plan.frame.window(tile_row - 1 + static_cast<int>(k) / 3, tile_column - 1 + static_cast<int>(k) % 3);
+    around[k] = k == 4 ? flat : load_tin(folder, tins[k]);
+    tiles[k].tin = &around[k].tin;
   }
   std::vector<PlacedTin> neighbors;
-  for (std::size_t k = 0; k < around.size(); ++k) neighbors.push_back({windows[k], &around[k].tin});
+  for (std::size_t k = 0; k < 9; ++k)
+    if (k != 4 && tiles[k].tin != nullptr) neighbors.push_back(tiles[k]);
   SurfaceOptions options;
   options.surface = plan.frame.surface;
   options.gradients = GradientKind::given;
-  options.given = seam_gradients(plan.frame, {plan.frame.window(tile_row, tile_column), &flat.tin}, neighbors, context);
-  Terrain smooth = make_terrain(std::move(flat.tin), flat.georef, options, context);
-  smooth.gradient_kind = GradientKind::normals;
-  smooth.grid = std::move(flat.grid);
-  smooth.tolerance = flat.tolerance;
-  return smooth;
+  if (options.surface != SurfaceKind::linear) options.given = seam_gradients(plan.frame, tiles[4], neighbors, context);
+  Terrain terrain = make_terrain(std::move(flat.tin), flat.georef, options, context);
+  if (options.surface != SurfaceKind::linear) terrain.gradient_kind = GradientKind::normals;
+  if (options.surface == SurfaceKind::powell_sabin)
+    terrain.edge_split = seam_splits(plan.frame, tiles[4], neighbors, context);
+  terrain.grid = std::move(flat.grid);
+  terrain.tolerance = flat.tolerance;
+  if (!plan.frame.fitted) return terrain;
+  return fitted(plan, tile_row, tile_column, std::move(terrain), tiles, context);
 }
 
 /// Is this very index in the folder already?
@@ -87,9 +115,13 @@ bool holds(const std::string& folder, const TiledIndex& index) {
 
 void check_tiles_folder(const TilePlan& plan, const std::string& folder, bool overwrite) {
   if (overwrite || !is_tiled_model(folder)) return;
-  TiledIndex there = read_tiled_index(folder);
+  TiledIndex there = read_tiled_index(folder), here = plan.frame;
   there.tiles.clear();
-  if (index_text(there) == index_text(plan.frame)) return;
+  if (plan.open()) {  // what is not known yet is taken as it is there
+    if (plan.ratio > 0 && there.budget > 0) here.budget = there.budget;
+    if (there.budget > 0) here.max_error = there.max_error;
+  }
+  if (index_text(there) == index_text(here)) return;
   throw CannotWrite(
       fmt::format("'{}' is a tiled model of another grid or with other parameters: give another folder, or "
                   "--overwrite to replace its index",
@@ -184,8 +216,27 @@ TiledIndex finish_tiles(const TilePlan& plan, std::vector<TileEntry> entries, co
   return index;
 }
 
-TiledIndex make_tiles(const TilePlan& plan, const std::string& folder, int jobs, bool overwrite,
+TilePlan settle_here(const TilePlan& plan, int jobs, const Context& context) {
+  if (!plan.open()) return plan;
+  const TiledIndex& frame = plan.frame;
+  std::vector<TileLook> looks(frame.tile_count());
+  run_jobs(looks.size(), jobs, "look", context, [&](std::size_t k, const Context& inner) {
+    looks[k] = look_at_tile(plan, row_of(frame, k), column_of(frame, k), inner);
+  });
+  return settle(plan, looks, [&](double max_error) {
+    std::vector<std::size_t> counts(looks.size());
+    run_jobs(counts.size(), jobs, "budget", context, [&](std::size_t k, const Context& inner) {
+      const int r = row_of(frame, k), c = column_of(frame, k);
+      counts[k] = count_vertices(plan, r, c, max_error, areas_around(frame, looks, r, c), inner);
+    });
+    return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  });
+}
+
+TiledIndex make_tiles(const TilePlan& asked, const std::string& folder, int jobs, bool overwrite,
                       const Context& context) {
+  check_tiles_folder(asked, folder, overwrite);
+  const TilePlan plan = settle_here(asked, jobs, context);
   check_tiles_folder(plan, folder, overwrite);
   std::error_code ec;
   fs::create_directories(folder, ec);

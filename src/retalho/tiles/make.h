@@ -22,7 +22,7 @@ void make_tin(const TilePlan& plan, int tile_row, int tile_column, const std::st
               const Context& context = {});
 
 /// Makes the surface of a tile from the triangulations in `folder`; its entry for the index. Memory: nine
-/// triangulations.
+/// triangulations, and for fitted surfaces fit_least_squares' for the largest strip (tiles/strips.h).
 TileEntry make_tile(const TilePlan& plan, int tile_row, int tile_column, const NeighborNames& tins,
                     const std::string& folder, const Context& context = {});
 
@@ -41,6 +41,9 @@ std::vector<std::size_t> missing_tins(const TilePlan& plan, const std::vector<st
 /// any more. Throws CannotWrite where another index is there and `overwrite` is false.
 TiledIndex finish_tiles(const TilePlan& plan, std::vector<TileEntry> entries, const std::vector<std::string>& tins,
                         const std::string& folder, bool overwrite);
+
+/// The plan with its budget settled (tiles/plan.h), `jobs` tiles at a time; as it is where none is open.
+TilePlan settle_here(const TilePlan& plan, int jobs, const Context& context = {});
 
 /// All of it, `jobs` tiles at a time (0: as many as there are threads), each then on one thread. The bytes do not
 /// depend on `jobs`, nor on what was there before. The folder is made if it is missing; one with the index of another

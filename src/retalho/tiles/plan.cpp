@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -13,7 +14,15 @@ namespace {
 constexpr int kLeastSize = 16, kMostSize = 16384;
 constexpr int kNaming = 1;  // to be raised when the same input would give other tiles
 
-/// Are there three valid cells that are not on one line?
+std::string parameters(const TilePlan& plan, int tile_row, int tile_column) {
+  const TiledIndex& f = plan.frame;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}|", kNaming, tile_row, tile_column, f.columns, f.rows,
+                     f.tile_size, f.max_error, f.cell_width, f.cell_height, f.georef.origin_x, f.georef.origin_y,
+                     f.georef.scale_x, f.georef.scale_y, f.georef.crs_wkt);
+}
+
+}  // namespace
+
 bool has_area(const Raster& raster) {
   bool first = false, second = false;
   std::int64_t c0 = 0, r0 = 0, dc = 0, dr = 0;
@@ -35,26 +44,17 @@ bool has_area(const Raster& raster) {
   return false;
 }
 
-std::string parameters(const TilePlan& plan, int tile_row, int tile_column) {
-  const TiledIndex& f = plan.frame;
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}|", kNaming, tile_row, tile_column, f.columns, f.rows,
-                     f.tile_size, f.max_error, f.cell_width, f.cell_height, f.georef.origin_x, f.georef.origin_y,
-                     f.georef.scale_x, f.georef.scale_y, f.georef.crs_wkt);
-}
-
-}  // namespace
-
 TilePlan plan_tiles(const std::string& source, const TileOptions& options, const ReadOptions& read) {
   if (options.size < kLeastSize || options.size > kMostSize)
     throw UsageError(fmt::format("tiles have {} to {} cells a side, not {}", kLeastSize, kMostSize, options.size), {},
                      "--tiles");
   if (!std::isfinite(options.max_error) || options.max_error < 0)
     throw UsageError(fmt::format("max_error must be 0 or more, not {}", options.max_error), {}, "--max-error");
-  if (options.surface == SurfaceKind::powell_sabin)
-    throw UsageError(
-        "tiles take linear or clough-tocher surfaces: the pieces of a powell-sabin one at a seam depend on both sides",
-        {}, "--surface");
-  TilePlan plan{source, read, {}};
+  if (!(options.ratio >= 0 && options.ratio <= 1))
+    throw UsageError(fmt::format("ratio must be in (0, 1], not {}", options.ratio), {}, "--ratio");
+  if ((options.max_error > 0) + (options.vertices > 0) + (options.ratio > 0) > 1)
+    throw UsageError("tiles take one of max_error, vertices and ratio", {}, "--vertices");
+  TilePlan plan{source, read, {}, options.ratio};
   const Raster place = inspect_raster(source, read);
   if (place.columns < 2 || place.rows < 2)
     throw BadInput(fmt::format("a grid of {} x {} cells has no area", place.columns, place.rows), source);
@@ -66,6 +66,8 @@ TilePlan plan_tiles(const std::string& source, const TileOptions& options, const
   plan.frame.tile_size = options.size;
   plan.frame.surface = options.surface;
   plan.frame.max_error = options.max_error;
+  plan.frame.fitted = options.fitted;
+  plan.frame.budget = options.vertices;
   return plan;
 }
 
@@ -91,6 +93,7 @@ std::string tin_name(const TilePlan& plan, int tile_row, int tile_column, const 
 
 std::string tile_name(const TilePlan& plan, int tile_row, int tile_column, const NeighborNames& tins) {
   std::string key = parameters(plan, tile_row, tile_column) + surface_name(plan.frame.surface);
+  if (plan.frame.fitted) key += " least-squares";
   for (const std::string& tin : tins) key += "|" + tin;
   return fmt::format("tile-{}-{}-{}.retalho", tile_row, tile_column, content_digest(key));
 }
