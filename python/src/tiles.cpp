@@ -120,6 +120,7 @@ std::vector<TileLook> looks_of(const TilePlan& plan, const std::vector<Look>& lo
     throw UsageError(fmt::format("looks must be of all {} tiles, not {}", plan.frame.tile_count(), looks.size()), {},
                      "looks");
   std::vector<TileLook> all;
+  all.reserve(looks.size());
   for (const auto& [area, valid, low, high] : looks) all.push_back({area, valid, low, high});
   return all;
 }

@@ -85,7 +85,7 @@ struct Case {
   SurfaceKind surface;
   bool fitted;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
   *out << surface_name(c.surface) << (c.fitted ? " fitted" : "") << (c.voids ? " with voids" : "");
 }
 
