@@ -1,7 +1,12 @@
 // TetraQuad surfaces: errors both ways, CPU time and memory of fits, and rays against Embree on triangles.
 //   bench_tetraquad                      the whole table
+//   bench_tetraquad --case CASE          one case of it
 //   bench_tetraquad --value CASE:WHAT    CASE: torus8, torus16, bunny24, bunny32, bunny48, noise02, noise05, adaptive,
-//                                        bumps (bumps:gain: coefficients of a grid over the adaptive mesh's)
+//                                        bumps (bumps:gain: coefficients of a grid over the adaptive mesh's); all but
+//                                        bumps with -cg or -local behind them for the other ways to fit
+//                                        poisson: CGAL's reconstruction of the bunny with its defaults beside the fit
+//                                        at 24 (poisson:ratio), with a mesh four times as fine beside the fit at 32
+//                                        (poisson:fine_ratio); distances of all to triangles
 //                                        WHAT: mean, max, normal, back (surface to truth, largest), coefficients, cpu,
 //                                        memory, open
 //                                        or rays:camera, rays:random, rays:camera_ratio, rays:random_ratio, rays:misses
@@ -22,6 +27,7 @@
 #include <string>
 #include <vector>
 
+#include "peers/poisson.h"
 #include "retalho/cloud/cloud.h"
 #include "retalho/mesh/tetraquad_mesh.h"
 #include "retalho/tetraquad/adaptive.h"
@@ -116,6 +122,7 @@ Values measure(const PointCloud& cloud, const PointCloud& truth, const TetraQuad
                    : fit_tetraquad(cloud, options, &report, one_thread());
   values["cpu"] = cpu_now() - start;
   values["memory"] = peak_megabytes();
+  values["iterations"] = report.iterations;
   values["coefficients"] = static_cast<double>(report.coefficients);
   const TetraQuadField field(surface);
   double sum = 0, largest = 0, angle = 0;
@@ -201,19 +208,77 @@ Values run_bumps() {
   return values;
 }
 
-Values run_case(const std::string& name) {
-  if (name == "bumps") return run_bumps();
+/// Distances to triangles, both ways, as fractions of the diagonal.
+void compare(Values& values, const std::string& name, const TriangleMesh& mesh, const PointCloud& truth,
+             const NearestPlane& to_truth) {
+  const bench::MeshDistance surface(mesh);
+  const double size = diagonal(truth);
+  double sum = 0, largest = 0, angle = 0, back = 0;
+  for (std::size_t k = 0; k < truth.positions.size(); ++k) {
+    const auto foot = surface.foot(truth.positions[k]);
+    const double d = norm(foot.point - truth.positions[k]);
+    sum += d;
+    largest = std::max(largest, d);
+    const Vec3 n = normalized(truth.normals[k]);
+    angle += std::atan2(norm(cross(foot.normal, n)), dot(foot.normal, n));
+  }
+  for (const Vec3& p : mesh.positions) back += to_truth(p);
+  const auto count = static_cast<double>(truth.positions.size());
+  values[name + "_mean"] = sum / count / size;
+  values[name + "_max"] = largest / size;
+  values[name + "_normal"] = angle / count * 180 / std::numbers::pi;
+  values[name + "_back_mean"] = back / static_cast<double>(mesh.positions.size()) / size;
+  values[name + "_triangles"] = static_cast<double>(mesh.triangles.size());
+  values[name + "_open"] = static_cast<double>(topology_of(mesh).open_edges);
+}
+
+Values run_poisson() {
+  const PointCloud bunny = read_points(data("bunny.ply")), truth = read_points(data("bunny_check.ply"));
+  const NearestPlane to_truth(bunny);
+  Values values;
+  double start = 0;
+  for (const int resolution : {24, 32}) {
+    const std::string name = resolution == 24 ? "ours" : "ours32";
+    start = cpu_now();
+    const TetraQuad surface =
+        fit_tetraquad(bunny, {.resolution = resolution, .solver = TetraQuadSolver::cg}, nullptr, one_thread());
+    values[name + "_cpu"] = cpu_now() - start;
+    compare(values, name, mesh_tetraquad(TetraQuadField(surface), {.divisions = 6}, nullptr, one_thread()), truth,
+            to_truth);
+  }
+  for (const int fineness : {1, 4}) {
+    const std::string name = fineness == 1 ? "cgal" : "cgal_fine";
+    start = cpu_now();
+    const TriangleMesh mesh = bench::poisson_by_cgal(bunny, fineness);
+    values[name + "_cpu"] = cpu_now() - start;
+    compare(values, name, mesh, truth, to_truth);
+  }
+  values["ratio"] = values["ours_mean"] / values["cgal_mean"];
+  values["fine_ratio"] = values["ours32_mean"] / values["cgal_fine_mean"];
+  return values;
+}
+
+Values run_case(const std::string& whole_name) {
+  if (whole_name == "bumps") return run_bumps();
+  if (whole_name == "poisson") return run_poisson();
+  const std::size_t dash = whole_name.find('-');
+  const std::string name = whole_name.substr(0, dash), way = dash == std::string::npos ? "" : whole_name.substr(dash);
+  const TetraQuadSolver solver = way == "-cg"      ? TetraQuadSolver::cg
+                                 : way == "-local" ? TetraQuadSolver::local
+                                                   : TetraQuadSolver::cholesky;
   if (name == "torus8" || name == "torus16") {
     const auto distance = [](Vec3 p) { return std::abs(std::hypot(std::hypot(p.x, p.y) - kRing, p.z) - kTube); };
-    return measure(torus(40000, 1), torus(20000, 2), {.resolution = name == "torus8" ? 8 : 16}, distance);
+    return measure(torus(40000, 1), torus(20000, 2), {.resolution = name == "torus8" ? 8 : 16, .solver = solver},
+                   distance);
   }
   const PointCloud bunny = read_points(data("bunny.ply")), truth = read_points(data("bunny_check.ply"));
   const NearestPlane distance(bunny);
   const auto to_truth = [&](Vec3 p) { return distance(p); };
-  if (name == "adaptive") return measure(bunny, truth, {.smoothness = 0.1}, to_truth, 29900);
-  if (name == "noise02") return measure(noisy(bunny, 0.002), truth, {.resolution = 24}, to_truth);
-  if (name == "noise05") return measure(noisy(bunny, 0.005), truth, {.resolution = 24}, to_truth);
-  return measure(bunny, truth, {.resolution = name == "bunny48" ? 48 : name == "bunny32" ? 32 : 24}, to_truth);
+  if (name == "adaptive") return measure(bunny, truth, {.smoothness = 0.1, .solver = solver}, to_truth, 29900);
+  if (name == "noise02") return measure(noisy(bunny, 0.002), truth, {.resolution = 24, .solver = solver}, to_truth);
+  if (name == "noise05") return measure(noisy(bunny, 0.005), truth, {.resolution = 24, .solver = solver}, to_truth);
+  const int resolution = name == "bunny48" ? 48 : name == "bunny32" ? 32 : 24;
+  return measure(bunny, truth, {.resolution = resolution, .solver = solver}, to_truth);
 }
 
 // --- rays ------------------------------------------------------------------------------------------------------------
@@ -376,12 +441,15 @@ int main(int argc, char** argv) {
     fmt::print("{{\"value\": {:.6g}}}\n", value);
     return 0;
   }
-  for (const std::string name :
-       {"torus8", "torus16", "bunny24", "bunny32", "bunny48", "noise02", "noise05", "adaptive", "bumps", "rays"}) {
+  std::vector<std::string> names = {
+      "torus8",     "torus16",       "bunny24",       "bunny32",  "bunny48",     "noise02", "noise05", "bunny24-cg",
+      "bunny48-cg", "torus16-local", "bunny24-local", "adaptive", "adaptive-cg", "bumps",   "poisson", "rays"};
+  if (argc > 2 && std::string(argv[1]) == "--case") names = {argv[2]};
+  for (const std::string& name : names) {
     fmt::print("{}\n", name);
     for (const auto& [what, value] : name == "rays" ? run_rays() : run_case(name))
       fmt::print("  {:<24}{:.6g}\n", what, value);
   }
-  fmt::print("rays that leave a closed torus, of 3 million: {}\n", count_misses());
+  if (names.size() > 1) fmt::print("rays that leave a closed torus, of 3 million: {}\n", count_misses());
   return 0;
 }

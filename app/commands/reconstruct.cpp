@@ -19,9 +19,10 @@ namespace retalho::app {
 namespace {
 
 const std::vector<std::string> kSplits{"five", "kuhn"};
+const std::vector<std::string> kSolvers{"cholesky", "cg", "local"};
 
 struct Options {
-  std::string points, output, tetrahedra, split = "five";
+  std::string points, output, tetrahedra, split = "five", fit = "cholesky";
   std::optional<int> resolution;
   std::optional<double> max_error;
   std::optional<std::size_t> adaptive;
@@ -70,6 +71,7 @@ void run_document(const Program& program, const Options& options, const Context&
 
 void run(const Program& program, const Options& options) {
   const std::size_t split = choose("--split", options.split, kSplits);
+  const std::size_t solver = choose("--fit", options.fit, kSolvers);
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
   check_output(program, options.output, {".retalho", ".ply", ".obj", ".stl", ".glb"}, {options.points});
@@ -86,6 +88,7 @@ void run(const Program& program, const Options& options) {
   TetraQuadFitOptions fit;
   fit.resolution = options.resolution.value_or(32);
   fit.smoothness = options.smoothness;
+  fit.solver = static_cast<TetraQuadSolver>(solver);
   fit.split = split == 0 ? TetSplit::five : TetSplit::kuhn;
   TetraQuadFitReport report;
   TetraQuadErrorOptions error;
@@ -131,6 +134,7 @@ void run(const Program& program, const Options& options) {
                                        {"tetrahedra", report.tetrahedra},
                                        {"crossed", report.crossed},
                                        {"coefficients", report.coefficients},
+                                       {"iterations", report.iterations},
                                        {"step", surface.mesh.step},
                                        {"components", topology.components},
                                        {"open_edges", topology.open_edges},
@@ -192,6 +196,11 @@ void add_reconstruct(CLI::App& root, Program& program) {
       ->type_name("T");
   command->add_option("--split", options->split, "Tetrahedra of a cube: five (default) or kuhn (six)")
       ->type_name("KIND");
+  command
+      ->add_option(
+          "--fit", options->fit,
+          "How: cholesky (default), cg (the same with less memory, slower), local (no equations: quick, rough)")
+      ->type_name("HOW");
   command->add_option("--tetrahedra", options->tetrahedra, "Writes the tetrahedra as well, for ParaView: .vtk")
       ->type_name("FILE");
   command->callback([options, &program] { run(program, *options); });

@@ -76,6 +76,23 @@ TEST(Reconstruct, AdaptiveSurfacesAreModelsAsOthersAre) {
   EXPECT_EQ(run(folder, "reconstruct torus.xyz -o other.ply --adaptive 9000 --resolution 9").code, 2);
 }
 
+TEST(Reconstruct, ByConjugateGradientsAndLocally) {
+  const ScratchFolder folder;
+  folder.put("torus.xyz", xyz_of(torus_points(5000, 7)));
+  const auto residual = [&](const std::string& how) {
+    const Outcome outcome =
+        run(folder, "reconstruct torus.xyz -o t.ply --overwrite --resolution 10 --json --fit " + how);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.json()["open_edges"], 0);
+    EXPECT_EQ(outcome.json()["iterations"].get<int>() > 0, how == "cg");
+    return outcome.json()["residual_mean"].get<double>();
+  };
+  const double direct = residual("cholesky");
+  EXPECT_NEAR(residual("cg") / direct, 1, 0.1);
+  EXPECT_GT(residual("local"), 2 * direct);
+  EXPECT_EQ(run(folder, "reconstruct torus.xyz -o u.ply --fit lu").code, 2);
+}
+
 TEST(Reconstruct, SaysWhatIsWrong) {
   const ScratchFolder folder;
   folder.put("torus.xyz", xyz_of(torus_points(500, 7)));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 #include <unordered_set>
@@ -22,29 +23,30 @@ class AdaptiveFit {
  public:
   AdaptiveFit(const PointCloud& cloud, const TetraQuadAdaptiveOptions& adaptive, const TetraQuadFitOptions& options,
               TetraQuadFitReport& report, const Context& context)
-      : adaptive_(adaptive), report_(report), context_(context) {
+      : adaptive_(adaptive), options_(options), report_(report), context_(context) {
     TetraQuadFitOptions roots = options;
     roots.resolution = adaptive.roots;
     roots.split = TetSplit::kuhn;
-    Samples taken = take_samples(cloud, roots, report);
-    samples_ = std::move(taken.samples);
+    samples_ = take_samples(cloud, roots, report);
+    const std::vector<TetPlace> places = occupied_places(samples_, TetSplit::kuhn, context);
     constexpr double unit = TetForest::kUnit;
-    for (Sample& sample : samples_) sample.place = unit * sample.place;
-    origin_ = taken.origin;
-    step_ = taken.step / unit;
+    samples_.step /= unit;
     georef_ = cloud.georef;
     std::vector<LatticePoint> cubes;
-    for (const TetPlace& place : taken.places)
+    for (const TetPlace& place : places)
       for (int side = 0; side < 27; ++side)
         cubes.push_back({place.cell[0] + side % 3 - 1, place.cell[1] + side / 3 % 3 - 1, place.cell[2] + side / 9 - 1});
     forest_ = TetForest(std::move(cubes));
     // The area that holds points, counted in cubes of a quarter of a root's edge.
     std::set<LatticePoint> cells;
     constexpr double coarse = unit / 4;
-    for (const Sample& s : samples_)
-      cells.insert({static_cast<std::int32_t>(std::floor(s.place.x / coarse)),
-                    static_cast<std::int32_t>(std::floor(s.place.y / coarse)),
-                    static_cast<std::int32_t>(std::floor(s.place.z / coarse))});
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      const Vec3 p = samples_.place(k);
+      cells.insert({static_cast<std::int32_t>(std::floor(p.x / coarse)),
+                    static_cast<std::int32_t>(std::floor(p.y / coarse)),
+                    static_cast<std::int32_t>(std::floor(p.z / coarse))});
+    }
+    if (options.solver != TetraQuadSolver::cholesky) bins_.emplace(samples_, unit / 8);
     weights_ = weights_of(options, static_cast<double>(cells.size()) * coarse * coarse, samples_.size());
   }
 
@@ -56,7 +58,7 @@ class AdaptiveFit {
         if (forest_.nodes()[leaf].level <= level) chosen.push_back(leaf);
       forest_.bisect(chosen);
     }
-    TetraQuad surface = fit();
+    TetraQuad surface = fit(nullptr);
     for (int pass = 1; pass < kPasses; ++pass) {
       if (adaptive_.max_error > 0 && report_.residual_quantile <= adaptive_.max_error) break;
       const std::vector<std::uint32_t> chosen = mark(surface);
@@ -64,7 +66,7 @@ class AdaptiveFit {
       const TetForest before = forest_;
       forest_.bisect(chosen);
       TetraQuadFitReport last = report_;
-      TetraQuad next = fit();
+      TetraQuad next = fit(&surface);
       if (report_.coefficients > adaptive_.coefficients) {
         forest_ = before;
         report_ = std::move(last);
@@ -91,8 +93,9 @@ class AdaptiveFit {
   /// Points in each leaf that holds any.
   std::map<std::uint32_t, std::size_t> count_samples() const {
     std::map<std::uint32_t, std::size_t> counts;
-    for (const Sample& s : samples_)
-      if (const std::int64_t leaf = forest_.locate(s.place); leaf >= 0) ++counts[static_cast<std::uint32_t>(leaf)];
+    for (std::size_t k = 0; k < samples_.size(); ++k)
+      if (const std::int64_t leaf = forest_.locate(samples_.place(k)); leaf >= 0)
+        ++counts[static_cast<std::uint32_t>(leaf)];
     return counts;
   }
 
@@ -110,24 +113,19 @@ class AdaptiveFit {
     return found;
   }
 
-  std::vector<Sample> placed(const TetMesh& mesh) const {
-    std::vector<Sample> sorted = samples_;
-    for (Sample& s : sorted) s.tet = mesh.tet_of_leaf.at(static_cast<std::uint32_t>(forest_.locate(s.place)));
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Sample& a, const Sample& b) { return a.tet < b.tet; });
-    return sorted;
-  }
+  const SampleBins* bins() const { return bins_ ? &*bins_ : nullptr; }
 
-  TetraQuad fit() {
+  /// `before`: the pass before this one, or null.
+  TetraQuad fit(const TetraQuad* before) {
     context_.check();
     TetraQuad surface;
     surface.georef = georef_;
-    surface.mesh = make_tet_mesh(origin_, step_, std::make_shared<TetForest>(forest_), band(count_samples()));
+    surface.mesh =
+        make_tet_mesh(samples_.origin, samples_.step, std::make_shared<TetForest>(forest_), band(count_samples()));
     const HalfFaces faces(surface.mesh.tets, surface.mesh.lattice.size());
-    const std::vector<Sample> sorted = placed(surface.mesh);
-    solve_energy(assemble_energy(surface.mesh, faces, sorted, weights_, context_), surface.quadrics,
-                 &report_.factor_numbers, context_);
-    measure(TetraQuadField(surface), sorted, {.max_error = adaptive_.max_error, .quantile = adaptive_.quantile},
-            report_);
+    const SampleRuns runs(samples_, surface.mesh, context_);
+    solve_surface(surface, faces, runs, bins(), before, weights_, options_, report_, context_);
+    measure(TetraQuadField(surface), runs, {.max_error = adaptive_.max_error, .quantile = adaptive_.quantile}, report_);
     return surface;
   }
 
@@ -139,9 +137,9 @@ class AdaptiveFit {
     };
     const TetraQuadField field(surface);
     std::map<std::uint32_t, std::pair<double, std::size_t>> residual;
-    for (const Sample& s : samples_) {
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
       TetBarycentric b;
-      const auto leaf = static_cast<std::uint32_t>(forest_.locate(s.place, &b));
+      const auto leaf = static_cast<std::uint32_t>(forest_.locate(samples_.place(k), &b));
       auto& [sum, count] = residual[leaf];
       sum += std::abs(evaluate(field.ordinates(surface.mesh.tet_of_leaf.at(leaf)), b));
       ++count;
@@ -189,7 +187,7 @@ class AdaptiveFit {
     const auto shared = surface.mesh.forest;
     std::vector<std::uint32_t> active = leaves_of(surface.mesh);
     active = kept(surface, active, counts);
-    surface = moved_to(surface, make_tet_mesh(origin_, step_, shared, active), nullptr);
+    surface = moved_to(surface, make_tet_mesh(samples_.origin, samples_.step, shared, active), nullptr);
     const std::unordered_set<std::uint32_t> own(active.begin(), active.end());
     std::unordered_set<std::uint64_t> own_vertices;
     for (const LatticePoint& v : surface.mesh.lattice) own_vertices.insert(cell_key(v));
@@ -208,19 +206,20 @@ class AdaptiveFit {
       }
       if (grown.size() == before) break;
       ++report_.growth_rounds;
-      surface = moved_to(surface, make_tet_mesh(origin_, step_, shared, grown), nullptr);
+      surface = moved_to(surface, make_tet_mesh(samples_.origin, samples_.step, shared, grown), nullptr);
       std::vector<char> is_new(surface.quadrics.size(), 0);
       for (std::size_t v = 0; v < is_new.size(); ++v)
         is_new[v] = own_vertices.contains(cell_key(surface.mesh.lattice[v])) ? 0 : 1;
-      solve_new(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size()), is_new, weights_, context_);
+      solve_added(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size()), is_new, bins(), weights_,
+                  options_, context_);
     }
     take_back(surface, own);
     active = kept(surface, leaves_of(surface.mesh), counts);
     std::sort(active.begin(), active.end(),
               [&](std::uint32_t a, std::uint32_t b) { return number.at(a) < number.at(b); });
-    surface = moved_to(surface, make_tet_mesh(origin_, step_, shared, active), nullptr);
+    surface = moved_to(surface, make_tet_mesh(samples_.origin, samples_.step, shared, active), nullptr);
     report_.open_faces = open_faces(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size())).size();
-    measure(TetraQuadField(surface), placed(surface.mesh),
+    measure(TetraQuadField(surface), SampleRuns(samples_, surface.mesh, context_),
             {.max_error = adaptive_.max_error, .quantile = adaptive_.quantile}, report_);
   }
 
@@ -260,7 +259,8 @@ class AdaptiveFit {
     std::unordered_set<std::uint32_t> open;
     for (const std::uint32_t f : open_faces(surface, faces))
       if (!own.contains(leaves[f / 4])) open.insert(leaves[f / 4]);
-    const TetraQuad part = moved_to(surface, make_tet_mesh(origin_, step_, surface.mesh.forest, added), nullptr);
+    const TetraQuad part =
+        moved_to(surface, make_tet_mesh(samples_.origin, samples_.step, surface.mesh.forest, added), nullptr);
     std::vector<char> seeds(added.size());
     for (std::size_t t = 0; t < added.size(); ++t) seeds[t] = open.contains(added[t]) ? 1 : 0;
     const TetraQuadField field(part);
@@ -271,16 +271,16 @@ class AdaptiveFit {
       if (own.contains(leaf)) good.push_back(leaf);
     for (std::size_t t = 0; t < added.size(); ++t)
       if (bad[t] == 0 && field.may_cross(t)) good.push_back(added[t]);
-    surface = moved_to(surface, make_tet_mesh(origin_, step_, surface.mesh.forest, good), nullptr);
+    surface = moved_to(surface, make_tet_mesh(samples_.origin, samples_.step, surface.mesh.forest, good), nullptr);
   }
 
   const TetraQuadAdaptiveOptions& adaptive_;
+  const TetraQuadFitOptions& options_;
   TetraQuadFitReport& report_;
   const Context& context_;
-  Vec3 origin_;
-  double step_ = 1;
   Georef georef_;
-  std::vector<Sample> samples_;
+  Samples samples_;
+  std::optional<SampleBins> bins_;
   TetForest forest_;
   EnergyWeights weights_;
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "retalho/tetraquad/local_fit.h"
+
 namespace retalho {
 namespace {
 
@@ -168,24 +170,34 @@ BlockMatrix empty_matrix(const TetMesh& mesh, const HalfFaces& faces) {
   return {mesh.lattice.size(), std::move(pairs)};
 }
 
-void add_samples(Energy& energy, const TetMesh& mesh, std::span<const Sample> samples, const EnergyWeights& weights) {
+void add_samples(Energy& energy, const TetMesh& mesh, const SampleRuns& samples, const EnergyWeights& weights) {
   const double value_weight = std::sqrt(weights.point), slope_weight = std::sqrt(weights.point * weights.normal);
   Eigen::Matrix<double, 40, Eigen::Dynamic> rows;
   Eigen::VectorXd right;
-  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    const std::uint32_t t = samples[begin].tet;
-    while (end < samples.size() && samples[end].tet == t) ++end;
-    const TetCorners& tet = mesh.tets[t];
-    const TetFrame frame = mesh.frame(t);
-    const double size = mesh.size(t), value_scale = value_weight / (size * size), slope_scale = slope_weight / size;
-    rows.setZero(40, static_cast<Eigen::Index>(4 * (end - begin)));
+  // One after the other in pieces, so that a crowded tetrahedron takes no more memory than others.
+  constexpr std::size_t most = 256;
+  for (std::size_t t = 0, begin = 0; t < samples.tets();) {
+    const auto whole = samples.in(t);
+    const auto run = whole.subspan(begin, std::min(most, whole.size() - begin));
+    const std::size_t now = t;
+    begin += run.size();
+    if (begin == whole.size()) {
+      begin = 0;
+      ++t;
+    }
+    if (run.empty()) continue;
+    const TetCorners& tet = mesh.tets[now];
+    const TetFrame frame = mesh.frame(now);
+    const double size = mesh.size(now), value_scale = value_weight / (size * size), slope_scale = slope_weight / size;
+    rows.setZero(40, static_cast<Eigen::Index>(4 * run.size()));
     right.setZero(rows.cols());
     Eigen::Index column = 0;
-    for (std::size_t s = begin; s < end; ++s, column += 4) {
-      const TetBarycentric b = frame.barycentric(samples[s].place);
-      const bool has_normal = norm2(samples[s].normal) > 0;
+    for (const std::uint32_t number : run) {
+      const Sample sample = samples.samples()[number];
+      const TetBarycentric b = frame.barycentric(sample.place);
+      const bool has_normal = norm2(sample.normal) > 0;
       for (std::size_t k = 0; k < 4; ++k) {
-        const Vec3 d = samples[s].place - to_vec(mesh.lattice[tet[k]]), g = frame.gradients[k];
+        const Vec3 d = sample.place - to_vec(mesh.lattice[tet[k]]), g = frame.gradients[k];
         const Row10 value = monomials(d);
         const auto at = static_cast<Eigen::Index>(10 * k);
         rows.block<10, 1>(at, column) = value_scale * b[k] * value.transpose();
@@ -194,9 +206,10 @@ void add_samples(Energy& energy, const TetMesh& mesh, std::span<const Sample> sa
           rows.block<10, 1>(at, column + 1 + static_cast<Eigen::Index>(axis)) =
               slope_scale * (b[k] * slopes(d, kAxes[axis]) + dot(g, kAxes[axis]) * value).transpose();
       }
-      right[column + 1] = slope_scale * samples[s].normal.x;
-      right[column + 2] = slope_scale * samples[s].normal.y;
-      right[column + 3] = slope_scale * samples[s].normal.z;
+      right[column + 1] = slope_scale * sample.normal.x;
+      right[column + 2] = slope_scale * sample.normal.y;
+      right[column + 3] = slope_scale * sample.normal.z;
+      column += 4;
     }
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(40, 40);
     square.selfadjointView<Eigen::Lower>().rankUpdate(rows);
@@ -215,18 +228,8 @@ double unit_at(double h, std::size_t n) {
 }
 
 void scale_unknowns(Energy& energy, const TetMesh& mesh) {
-  std::vector<double> logs(mesh.lattice.size(), 0);
-  std::vector<int> count(mesh.lattice.size(), 0);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const double log = std::log(mesh.size(t));
-    for (const std::uint32_t v : mesh.tets[t]) {
-      logs[v] += log;
-      ++count[v];
-    }
-  }
-  energy.sizes.resize(mesh.lattice.size());
-  for (std::size_t v = 0; v < logs.size(); ++v) energy.sizes[v] = std::exp(logs[v] / count[v]);
-  for (std::size_t v = 0; v < logs.size(); ++v) {
+  energy.sizes = vertex_sizes(mesh);
+  for (std::size_t v = 0; v < energy.sizes.size(); ++v) {
     const auto columns = energy.matrix.columns(v);
     for (std::size_t n = 0; n < columns.size(); ++n) {
       double* block = energy.matrix.block(v, n);
@@ -254,7 +257,18 @@ void solve_energy(Energy energy, std::vector<Quadric>& quadrics, std::size_t* fa
     for (std::size_t i = 0; i < kBlock; ++i) quadrics[v][i] = x[kBlock * v + i] * unit_of(energy, v, i);
 }
 
-Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, std::span<const Sample> samples,
+CgNotes solve_energy_by_cg(const Energy& energy, std::vector<Quadric>& quadrics, double tolerance,
+                           const Context& context) {
+  std::vector<double> x(energy.right.size());
+  for (std::size_t v = 0; v < quadrics.size(); ++v)
+    for (std::size_t i = 0; i < kBlock; ++i) x[kBlock * v + i] = quadrics[v][i] / unit_of(energy, v, i);
+  const CgNotes notes = solve_cg(energy.matrix, energy.right, x, {.tolerance = tolerance}, context);
+  for (std::size_t v = 0; v < quadrics.size(); ++v)
+    for (std::size_t i = 0; i < kBlock; ++i) quadrics[v][i] = x[kBlock * v + i] * unit_of(energy, v, i);
+  return notes;
+}
+
+Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, const SampleRuns& samples,
                        const EnergyWeights& weights, const Context& context) {
   Energy energy{empty_matrix(mesh, faces), std::vector<double>(kBlock * mesh.lattice.size(), 0.0), 0, {}};
   add_samples(energy, mesh, samples, weights);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_set>
 
 #include "retalho/core/error.h"
@@ -15,16 +16,11 @@ namespace {
 
 constexpr int kReach = 2;  // cells that the surface may be continued beyond those with points
 
-/// Tetrahedra with points, and those of the cubes around that have three vertices of them.
-std::vector<TetPlace> first_band(const Samples& samples, TetSplit split, std::size_t& cells) {
-  std::vector<TetPlace> band = samples.places;
-  std::sort(band.begin(), band.end());
-  band.erase(std::unique(band.begin(), band.end()), band.end());
+/// `band`: tetrahedra with points, ascending; these, and those of the cubes around that have three vertices of them.
+std::vector<TetPlace> first_band(std::vector<TetPlace> band, TetSplit split) {
   std::unordered_set<std::uint64_t> vertices, seen;
   for (const TetPlace& place : band)
     for (const LatticePoint& corner : lattice_corners(split, place)) vertices.insert(cell_key(corner));
-  cells = 0;
-  for (std::size_t n = 0; n < band.size(); ++n) cells += n == 0 || band[n].cell != band[n - 1].cell ? 1 : 0;
   const std::size_t own = band.size();
   for (std::size_t n = 0; n < own; ++n) {
     if (n > 0 && band[n].cell == band[n - 1].cell) continue;
@@ -45,48 +41,37 @@ std::vector<TetPlace> first_band(const Samples& samples, TetSplit split, std::si
   return band;
 }
 
-/// Samples ascending by the tetrahedron that holds them.
-std::vector<Sample> sorted_samples(const Samples& samples, const TetMesh& mesh) {
-  std::vector<Sample> sorted = samples.samples;
-  for (std::size_t k = 0; k < sorted.size(); ++k) {
-    const TetPlace& place = samples.places[k];
-    std::size_t t = mesh.first_in_cell.at(cell_key(place.cell));
-    while (mesh.places[t] != place) ++t;
-    sorted[k].tet = static_cast<std::uint32_t>(t);
-  }
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Sample& a, const Sample& b) { return a.tet < b.tet; });
-  return sorted;
-}
-
 TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const TetraQuadErrorOptions& error,
-              TetraQuadFitReport* report_out, const Context& context) {
+              const TetraQuad* before, TetraQuadFitReport* report_out, const Context& context) {
   check_options(options);
   TetraQuadFitReport report;
   report.resolution = options.resolution;
   const Samples samples = take_samples(cloud, options, report);
-  std::size_t cells = 0;
-  std::vector<TetPlace> band = first_band(samples, options.split, cells);
+  const std::vector<TetPlace> with_points = occupied_places(samples, options.split, context);
+  std::vector<LatticePoint> data;
+  for (const TetPlace& place : with_points)
+    if (data.empty() || data.back() != place.cell) data.push_back(place.cell);
 
-  const EnergyWeights weights = weights_of(options, static_cast<double>(cells), samples.samples.size());
+  const EnergyWeights weights = weights_of(options, static_cast<double>(data.size()), samples.size());
+  std::optional<SampleBins> bins;
+  if (options.solver != TetraQuadSolver::cholesky) bins.emplace(samples, 1);
   TetraQuad surface;
   surface.georef = cloud.georef;
-  surface.mesh = make_tet_mesh(samples.origin, samples.step, options.split, std::move(band));
+  surface.mesh = make_tet_mesh(samples.origin, samples.step, options.split, first_band(with_points, options.split));
   HalfFaces faces(surface.mesh.tets, surface.mesh.lattice.size());
-  solve_energy(assemble_energy(surface.mesh, faces, sorted_samples(samples, surface.mesh), weights, context),
-               surface.quadrics, &report.factor_numbers, context);
+  solve_surface(surface, faces, SampleRuns(samples, surface.mesh, context), bins ? &*bins : nullptr, before, weights,
+                options, report, context);
 
-  std::vector<LatticePoint> data;
-  for (const TetPlace& place : samples.places) data.push_back(place.cell);
-  std::sort(data.begin(), data.end());
-  data.erase(std::unique(data.begin(), data.end()), data.end());
-  std::vector<TetPlace> with_points = samples.places;
-  std::sort(with_points.begin(), with_points.end());
-  with_points.erase(std::unique(with_points.begin(), with_points.end()), with_points.end());
   report.stray = drop_stray(surface, faces, with_points);
-  report.growth_rounds = grow(surface, faces, data, kReach, options.growth, weights, context);
+  report.growth_rounds = grow(
+      surface, faces, data, kReach, options.growth,
+      [&](TetraQuad& grown, const HalfFaces& its_faces, const std::vector<char>& is_new) {
+        solve_added(grown, its_faces, is_new, bins ? &*bins : nullptr, weights, options, context);
+      },
+      context);
   report.stray += drop_stray(surface, faces, with_points);
   report.open_faces = open_faces(surface, faces).size();
-  measure(TetraQuadField(surface), sorted_samples(samples, surface.mesh), error, report);
+  measure(TetraQuadField(surface), SampleRuns(samples, surface.mesh, context), error, report);
   if (report_out != nullptr) *report_out = std::move(report);
   return surface;
 }
@@ -95,7 +80,7 @@ TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const
 
 TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport* report,
                         const Context& context) {
-  return fit(cloud, options, {}, report, context);
+  return fit(cloud, options, {}, nullptr, report, context);
 }
 
 TetraQuad fit_tetraquad_to(const PointCloud& cloud, const TetraQuadErrorOptions& error,
@@ -108,9 +93,14 @@ TetraQuad fit_tetraquad_to(const PointCloud& cloud, const TetraQuadErrorOptions&
     throw UsageError("resolutions go from 2 to 1000, the finest not below the coarsest", {}, "--resolution");
   TetraQuadFitOptions now = options;
   now.resolution = error.coarsest;
+  TetraQuad surface;
+  int iterations = 0;
   while (true) {
     TetraQuadFitReport report;
-    TetraQuad surface = fit(cloud, now, error, &report, context);
+    TetraQuad finer = fit(cloud, now, error, surface.quadrics.empty() ? nullptr : &surface, &report, context);
+    surface = std::move(finer);
+    iterations += report.iterations;
+    report.iterations = iterations;
     const bool reached = report.residual_quantile <= error.max_error;
     if (reached || now.resolution >= error.finest) {
       if (!reached)

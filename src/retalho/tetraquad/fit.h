@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,11 @@
 #include "retalho/tetraquad/tetraquad.h"
 
 namespace retalho {
+
+/// How the quadrics are found. `cholesky`: the least energy, by sparse factors. `cg`: the same by conjugate gradients,
+/// starting from the local fits; less memory, more time. `local`: no system of equations, each vertex from the points
+/// around it; fast and rough.
+enum class TetraQuadSolver : std::uint8_t { cholesky, cg, local };
 
 struct TetraQuadFitOptions {
   int resolution = 32;  ///< cubes along the longest side of the points' box, 2 to 1000
@@ -24,6 +30,8 @@ struct TetraQuadFitOptions {
   /// At most so many times tetrahedra are added where the surface leaves those that there are, up to two cubes beyond
   /// those with points. What does not close a hole is taken back: larger holes and the border of open data stay open.
   int growth = 3;
+  TetraQuadSolver solver = TetraQuadSolver::cholesky;
+  double cg_tolerance = 1e-4;  ///< residual of `cg`, preconditioned, against the right-hand side; above 0
 };
 
 /// Refine until the points are near enough.
@@ -41,6 +49,7 @@ struct TetraQuadFitReport {
   std::size_t crossed = 0;         ///< tetrahedra that the surface passes through (TetraQuadField::crosses)
   std::size_t coefficients = 0;    ///< ten a vertex of those
   std::size_t factor_numbers = 0;  ///< in the Cholesky factors
+  int iterations = 0;              ///< of conjugate gradients, all passes together
   int growth_rounds = 0;
   std::size_t stray = 0;                       ///< tetrahedra dropped with sheets that no point asks for
   std::size_t open_faces = 0;                  ///< border faces that the surface still meets (0: it is closed)

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/tetraquad/growth.h"
+#include "retalho/tetraquad/local_fit.h"
 
 namespace retalho {
 namespace {
@@ -23,6 +25,8 @@ void check_options(const TetraQuadFitOptions& options) {
                        options.ridge >= 0 && *std::min_element(options.jump.begin(), options.jump.end()) >= 0;
   if (!weights || !std::isfinite(options.smoothness))
     throw UsageError("the weights of the fit must be positive numbers", {}, "--smoothness");
+  if (!(options.cg_tolerance > 0 && options.cg_tolerance < 1))
+    throw UsageError("the tolerance of conjugate gradients lies between 0 and 1", {}, "--fit");
 }
 
 Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport& report) {
@@ -35,6 +39,7 @@ Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
+  if (cloud.positions.size() >= (std::size_t{1} << 32) - 1) throw BadInput("more than 4 billion points");
   if (report.used == 0) throw BadInput("there is no point with finite coordinates to make a surface of");
   const Vec3 size = high - low;
   const double longest = std::max({size.x, size.y, size.z});
@@ -43,24 +48,19 @@ Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options
   if (!(longest > 1e-12 * reach))
     throw BadInput(fmt::format("all {} points lie at one place: that makes no surface", report.used));
   if (longest > 1e150) throw BadInput("coordinates beyond 1e150: scale them");
-  Samples out;
-  out.step = longest / options.resolution * 1.0000001;
+  const double step = longest / options.resolution * 1.0000001;
   // Off the points' own lattice, so that a box's faces do not run along faces of the grid.
   const Vec3 middle = 0.5 * (low + high);
-  const auto cells = [&](double length) { return std::ceil(length / out.step - 1e-6); };
-  out.origin =
-      middle - out.step * Vec3{0.5 * cells(size.x) - 1e-4, 0.5 * cells(size.y) - 2e-4, 0.5 * cells(size.z) - 3e-4};
+  const auto cells = [&](double length) { return std::ceil(length / step - 1e-6); };
+  const Vec3 origin =
+      middle - step * Vec3{0.5 * cells(size.x) - 1e-4, 0.5 * cells(size.y) - 2e-4, 0.5 * cells(size.z) - 3e-4};
+  std::vector<std::uint32_t> kept;
+  if (report.used < report.points) kept.reserve(report.used);
   for (std::size_t k = 0; k < cloud.positions.size(); ++k) {
     if (!is_finite(cloud.positions[k])) continue;
-    Sample sample;
-    sample.place = (cloud.positions[k] - out.origin) / out.step;
-    if (has_normals && is_finite(cloud.normals[k])) {
-      const double length = norm(cloud.normals[k]);
-      if (length > 1e-100 && std::isfinite(length)) sample.normal = cloud.normals[k] / length;
-    }
-    if (norm2(sample.normal) == 0) ++report.without_normal;
-    out.places.push_back(place_of(options.split, sample.place));
-    out.samples.push_back(sample);
+    if (report.used < report.points) kept.push_back(static_cast<std::uint32_t>(k));
+    const double length = has_normals && is_finite(cloud.normals[k]) ? norm(cloud.normals[k]) : 0;
+    if (!(length > 1e-100 && std::isfinite(length))) ++report.without_normal;
   }
   if (report.without_normal == report.used)
     throw BadInput("the points have no normals: estimate them first (estimate_normals, retalho reconstruct does)");
@@ -70,10 +70,38 @@ Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options
   if (report.without_normal > 0)
     report.warnings.push_back(
         fmt::format("{} points have no usable normal: only their places count", report.without_normal));
-  return out;
+  return {cloud, std::move(kept), origin, step};
 }
 
-void measure(const TetraQuadField& field, const std::vector<Sample>& samples, const TetraQuadErrorOptions& error,
+void solve_surface(TetraQuad& surface, const HalfFaces& faces, const SampleRuns& runs, const SampleBins* bins,
+                   const TetraQuad* before, const EnergyWeights& weights, const TetraQuadFitOptions& options,
+                   TetraQuadFitReport& report, const Context& context) {
+  if (options.solver == TetraQuadSolver::cholesky)
+    return solve_energy(assemble_energy(surface.mesh, faces, runs, weights, context), surface.quadrics,
+                        &report.factor_numbers, context);
+  surface.quadrics.assign(surface.mesh.lattice.size(), Quadric{});
+  std::vector<char> left(surface.mesh.lattice.size(), 1);
+  if (options.solver == TetraQuadSolver::cg && before != nullptr)
+    left = start_from(*before, surface.mesh, surface.quadrics);
+  fit_locally(*bins, surface.mesh, left, vertex_sizes(surface.mesh), surface.quadrics, context);
+  if (options.solver == TetraQuadSolver::local) return;
+  const CgNotes notes = solve_energy_by_cg(assemble_energy(surface.mesh, faces, runs, weights, context),
+                                           surface.quadrics, options.cg_tolerance, context);
+  report.iterations += notes.iterations;
+  if (notes.residual > options.cg_tolerance)
+    report.warnings.push_back(fmt::format("conjugate gradients stopped after {} iterations at {:.2g}, not {:.2g}",
+                                          notes.iterations, notes.residual, options.cg_tolerance));
+}
+
+void solve_added(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new, const SampleBins* bins,
+                 const EnergyWeights& weights, const TetraQuadFitOptions& options, const Context& context) {
+  if (options.solver == TetraQuadSolver::local)
+    fit_locally(*bins, surface.mesh, is_new, vertex_sizes(surface.mesh), surface.quadrics, context);
+  else
+    solve_new(surface, faces, is_new, weights, context);
+}
+
+void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQuadErrorOptions& error,
              TetraQuadFitReport& report) {
   const TetMesh& mesh = field.surface().mesh;
   report.vertices = mesh.lattice.size();
@@ -87,22 +115,25 @@ void measure(const TetraQuadField& field, const std::vector<Sample>& samples, co
   }
   report.coefficients = 10 * static_cast<std::size_t>(std::count(live.begin(), live.end(), 1));
   std::vector<double> residuals;
-  residuals.reserve(samples.size());
+  residuals.reserve(runs.size());
   double sum = 0;
-  for (const Sample& sample : samples) {
-    const Jet3 jet = field.gradient(sample.tet, field.frame(sample.tet).barycentric(sample.place));
-    const double slope = norm(jet.gradient);
-    residuals.push_back(std::abs(jet.value) / std::max(slope, 1e-12));
-    sum += residuals.back();
-  }
-  std::sort(residuals.begin(), residuals.end());
+  for (std::size_t t = 0; t < runs.tets(); ++t)
+    for (const std::uint32_t k : runs.in(t)) {
+      const Jet3 jet = field.gradient(t, field.frame(t).barycentric(runs.samples().place(k)));
+      const double slope = norm(jet.gradient);
+      residuals.push_back(std::abs(jet.value) / std::max(slope, 1e-12));
+      sum += residuals.back();
+    }
   report.residual_mean = sum / static_cast<double>(residuals.size());
-  report.residual_max = residuals.back();
+  report.residual_max = *std::max_element(residuals.begin(), residuals.end());
   const auto last = static_cast<double>(residuals.size());
-  report.residual_quantile = residuals[static_cast<std::size_t>(std::max(1.0, std::ceil(error.quantile * last))) - 1];
+  const auto rank =
+      residuals.begin() + static_cast<std::ptrdiff_t>(std::max(1.0, std::ceil(error.quantile * last))) - 1;
+  std::nth_element(residuals.begin(), rank, residuals.end());
+  report.residual_quantile = *rank;
   if (error.max_error > 0)
-    report.outliers = static_cast<std::size_t>(residuals.end() -
-                                               std::upper_bound(residuals.begin(), residuals.end(), error.max_error));
+    report.outliers = static_cast<std::size_t>(
+        std::count_if(residuals.begin(), residuals.end(), [&](double r) { return r > error.max_error; }));
 }
 
 EnergyWeights weights_of(const TetraQuadFitOptions& options, double area, std::size_t samples) {

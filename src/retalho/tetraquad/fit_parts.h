@@ -11,22 +11,25 @@ namespace retalho {
 /// Throws UsageError.
 void check_options(const TetraQuadFitOptions& options);
 
-/// The points in lattice coordinates, with unit normals (or none).
-struct Samples {
-  Vec3 origin;
-  double step = 1;
-  std::vector<Sample> samples;   ///< tet is not set yet
-  std::vector<TetPlace> places;  ///< of each
-};
-
-/// Throws BadInput for points that make no surface; the report gets their counts and warnings.
+/// The lattice of the fit and the points in it. Throws BadInput for points that make no surface; the report gets their
+/// counts and warnings.
 Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport& report);
 
 /// `area`: that holds points, in steps^2.
 EnergyWeights weights_of(const TetraQuadFitOptions& options, double area, std::size_t samples);
 
+/// Finds the quadrics as `options.solver` says. `bins`: null where nothing local is asked for. `before`: a fit on
+/// another mesh to start from, or null.
+void solve_surface(TetraQuad& surface, const HalfFaces& faces, const SampleRuns& runs, const SampleBins* bins,
+                   const TetraQuad* before, const EnergyWeights& weights, const TetraQuadFitOptions& options,
+                   TetraQuadFitReport& report, const Context& context);
+
+/// Finds the quadrics of the marked vertices, the others stay.
+void solve_added(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new, const SampleBins* bins,
+                 const EnergyWeights& weights, const TetraQuadFitOptions& options, const Context& context);
+
 /// Sizes and residuals of the finished surface.
-void measure(const TetraQuadField& field, const std::vector<Sample>& samples, const TetraQuadErrorOptions& error,
+void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQuadErrorOptions& error,
              TetraQuadFitReport& report);
 
 }  // namespace retalho

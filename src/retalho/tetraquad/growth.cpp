@@ -234,7 +234,7 @@ std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces&
 }
 
 int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach, int rounds,
-         const EnergyWeights& weights, const Context& context) {
+         const Fill& fill, const Context& context) {
   const std::vector<TetPlace> own = surface.mesh.places;
   std::unordered_set<std::uint64_t> own_vertices;
   for (const LatticePoint& v : surface.mesh.lattice) own_vertices.insert(cell_key(v));
@@ -262,7 +262,7 @@ int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& 
     std::vector<char> is_new(surface.quadrics.size());
     for (std::size_t v = 0; v < is_new.size(); ++v)
       is_new[v] = own_vertices.contains(cell_key(surface.mesh.lattice[v])) ? 0 : 1;
-    solve_new(surface, faces, is_new, weights, context);
+    fill(surface, faces, is_new);
   }
   if (round > 0) {
     surface = with_places(surface, useful_places(surface, faces, own));

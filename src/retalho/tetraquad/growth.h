@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "retalho/core/context.h"
@@ -28,10 +29,13 @@ std::size_t drop_stray(TetraQuad& surface, HalfFaces& faces, const std::vector<T
 /// Border half-faces that the surface meets: the function changes its sign on a lattice of six parts a side.
 std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces& faces);
 
+/// Finds the quadrics of the marked vertices, as solve_new does.
+using Fill = std::function<void(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new)>;
+
 /// Closes holes: adds all tetrahedra of the cubes round those faces, as long as a cube is within `reach` cubes of one
-/// of `data` (ascending), at most `rounds` times. All that has been added minimises the smoothing terms of the energy
-/// together, the rest stays. In the end only what closes a hole is kept. Returns the number of rounds.
+/// of `data` (ascending), at most `rounds` times. All that has been added is filled together, the rest stays. In the
+/// end only what closes a hole is kept. Returns the number of rounds.
 int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach, int rounds,
-         const EnergyWeights& weights, const Context& context);
+         const Fill& fill, const Context& context);
 
 }  // namespace retalho

@@ -10,7 +10,8 @@ Vec3 to_vec(const LatticePoint& l) {
   return {static_cast<double>(l[0]), static_cast<double>(l[1]), static_cast<double>(l[2])};
 }
 
-/// The same quadric seen from `d` further on.
+}  // namespace
+
 Quadric shifted(const Quadric& q, Vec3 d) {
   Quadric r = q;
   r[0] = polar(q, d, d);
@@ -19,8 +20,6 @@ Quadric shifted(const Quadric& q, Vec3 d) {
   r[3] += 2 * q[6] * d.z + q[8] * d.x + q[9] * d.y;
   return r;
 }
-
-}  // namespace
 
 TetCubic ordinates(const std::array<Quadric, 4>& q, const std::array<Vec3, 4>& x) {
   TetCubic c{};

@@ -30,6 +30,9 @@ constexpr double polar(const Quadric& q, Vec3 u, Vec3 v) {
          (q[7] * (u.x * v.y + u.y * v.x) + q[8] * (u.x * v.z + u.z * v.x) + q[9] * (u.y * v.z + u.z * v.y)) / 2;
 }
 
+/// The same quadric seen from `d` further on.
+Quadric shifted(const Quadric& q, Vec3 d);
+
 /// The 20 Bernstein ordinates of sum b_i q_i: c_abc = (q_a[b,c] + q_b[c,a] + q_c[a,b]) / 3. `x`: the corners, in the
 /// quadrics' unit. Those of a face use the face's corners only: neighbours agree on it.
 TetCubic ordinates(const std::array<Quadric, 4>& q, const std::array<Vec3, 4>& x);
