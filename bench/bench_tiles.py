@@ -5,7 +5,7 @@ tiles, two jobs and two Dask workers against one, and peak memory.
   bench/bench_tiles.py [--build build/release]              the whole table
   bench/bench_tiles.py --value jobs|dask|overhead|growth|memory|rate    one figure, as {"value": ...}
 
-The grid is N44W072 (3601 x 3601) of $RETALHO_DATA, tolerance 2 m. Times are wall time, the better of two runs.
+The grid is N48W125 (3601 x 3601, two thirds of it land) of $RETALHO_DATA, tolerance 2 m. Times are wall time, the better of two runs.
 """
 import argparse
 import json
@@ -25,7 +25,7 @@ class Bench:
     def __init__(self, build, folder):
         self.build, self.folder = pathlib.Path(build).resolve(), pathlib.Path(folder)
         data = os.environ.get("RETALHO_DATA") or ROOT.parent / "shared" / "data"
-        self.dem = pathlib.Path(data).resolve() / "dem" / "N44W072.hgt"
+        self.dem = pathlib.Path(data).resolve() / "dem" / "N48W125.hgt.zip"
         if not self.dem.exists():
             sys.exit(f"real data missing: {self.dem} (set RETALHO_DATA)")
         self.environment = {**os.environ, "PYTHONPATH": str(self.build / "python")}
@@ -45,11 +45,19 @@ class Bench:
             peak = int(done.stderr.strip().splitlines()[-1]) / 1024
         return best, peak
 
+    def check_count(self, count):
+        """The figures are of so many tiles, or of nothing."""
+        made = len(json.loads((self.folder / "out" / "index.json").read_text())["tiles"])
+        if made != count:
+            sys.exit(f"{made} tiles were made, not {count}: is {self.dem} another grid?")
+
     def fit(self, *options, output="out"):
         return [self.build / "retalho", "fit", self.dem, "-o", self.folder / output, "--max-error", 2, "-q", *options]
 
     def tiles(self, count, jobs, threads=1):
-        return self.run(self.fit("--tiles", SIZES[count], "--jobs", jobs, "--threads", threads))
+        figures = self.run(self.fit("--tiles", SIZES[count], "--jobs", jobs, "--threads", threads))
+        self.check_count(count)
+        return figures
 
     def dask(self, workers):
         """Without the start of the cluster: seconds of make_tiles itself."""
@@ -78,9 +86,10 @@ if __name__ == "__main__":
         return float(done.stdout)
 
     def part(self, cells):
-        """The north-western part of the grid as a VRT."""
+        """The south-eastern part of the grid, land, as a VRT."""
         path = self.folder / f"part{cells}.vrt"
-        subprocess.run(["gdal_translate", "-q", "-of", "VRT", "-srcwin", "0", "0", str(cells), str(cells),
+        subprocess.run(["gdal_translate", "-q", "-of", "VRT", "-srcwin", str(3601 - cells),
+                        str(3601 - cells), str(cells), str(cells),
                         str(self.dem), str(path)], check=True)
         return path
 

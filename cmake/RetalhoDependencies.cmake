@@ -5,6 +5,7 @@ find_package(fmt REQUIRED)
 find_package(GDAL REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)  # mesh/quantized_tile: gzip
 find_package(Freetype REQUIRED)
 # The captions' face; a program that is moved to another machine can name another one in $RETALHO_FONT.
 find_file(RETALHO_FONT_FILE DejaVuSans.ttf PATHS /usr/share/fonts/truetype/dejavu /usr/share/fonts/dejavu /usr/share/fonts/TTF NO_DEFAULT_PATH)

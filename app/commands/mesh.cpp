@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "inputs.h"
+#include "mesh_globe.h"
 #include "render_patches.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/patch_mesh.h"
@@ -23,12 +24,19 @@ namespace {
 struct Options {
   std::string model, output;
   double tolerance = 0;
+  GlobeFlags globe;
 };
 
 void run(const Program& program, const Options& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
-  check_output(program, options.output, {".ply", ".obj", ".stl", ".glb"}, {options.model});
+  if (is_globe_name(options.output))
+    return mesh_globe(program, options.globe, options.model, options.output, options.tolerance);
+  if (options.globe.given())
+    throw UsageError(
+        "--level, --outside, --no-normals, --no-gzip and --tile-triangles go with -o DIR/layer.json or "
+        "DIR/tileset.json");
+  check_output(program, options.output, {".ply", ".obj", ".stl", ".glb", ".xml", ".landxml"}, {options.model});
   const Context context = program.context();
   const Model model = load_any_model(options.model);
   double tolerance = options.tolerance;
@@ -94,13 +102,20 @@ void add_mesh(CLI::App& root, Program& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = add_command(root, program, "mesh", "A model as triangles, to a tolerance",
                                   "retalho mesh dem.retalho -o dem.glb\n"
-                                  "retalho mesh dem.retalho -o dem.ply --tolerance 0.1");
+                                  "retalho mesh dem.retalho -o dem.ply --tolerance 0.1\n"
+                                  "retalho mesh dem.retalho -o survey.xml\n"
+                                  "retalho mesh dem.retalho -o terrain/layer.json --tolerance 0.5\n"
+                                  "retalho mesh dem.retalho -o tiles/tileset.json");
   command->add_option("MODEL", options->model, "A .retalho file")->required()->type_name("");
-  command->add_option("-o,--output", options->output, "The mesh: .ply, .obj, .stl or .glb")
+  command
+      ->add_option("-o,--output", options->output,
+                   "The mesh: .ply, .obj, .stl, .glb, .xml (LandXML); or a folder's layer.json (quantized-mesh) or "
+                   "tileset.json (3D Tiles)")
       ->required()
       ->type_name("FILE");
   command->add_option("--tolerance", options->tolerance, "Largest distance to the surface (terrain: vertical)")
       ->type_name("T");
+  add_globe_flags(*command, options->globe);
   command->callback([options, &program] { run(program, *options); });
 }
 

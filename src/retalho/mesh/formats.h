@@ -45,6 +45,7 @@ void write_ply(const TriangleMesh& mesh, ByteSink& out);
 void write_obj(const TriangleMesh& mesh, ByteSink& out);
 void write_stl(const TriangleMesh& mesh, ByteSink& out);
 void write_glb(const TriangleMesh& mesh, ByteSink& out);
+void write_landxml(const TriangleMesh& mesh, ByteSink& out);
 
 TriangleMesh read_ply(std::string_view bytes, const std::string& path);
 TriangleMesh read_obj(std::string_view bytes, const std::string& path);

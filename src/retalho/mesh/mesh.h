@@ -16,7 +16,9 @@ struct TriangleMesh {
   std::vector<Vec3> normals;                            ///< unit, one a vertex; may be empty
   std::vector<Vec2> texture;                            ///< texture coordinates, one a vertex; may be empty
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside (above)
-  Vec3 offset;  ///< written into formats with double coordinates, and said in the others
+  Vec3 offset;          ///< written into formats with double coordinates, and said in the others
+  std::string unit;     ///< of the coordinates: "metre", "foot", "US survey foot"; empty: not known
+  std::string crs_wkt;  ///< of positions + offset; empty: none, or they are not coordinates of a CRS
 };
 
 /// How a mesh hangs together, by its vertex indices alone; positions only tell a crack from a border.
@@ -37,9 +39,10 @@ MeshCheck check_mesh(const TriangleMesh& mesh);
 /// By extension: .ply (binary little-endian: double positions with `offset` added, float normals and texture), .obj
 /// (text, all digits, `offset` added), .stl (binary, float, without `offset`, which its header tells), .glb (binary
 /// glTF 2.0: float positions about the box's centre, which is the node's translation; a root node turns z-up into
-/// glTF's y-up; `offset` in the root's extras). Normals and texture coordinates go along where the format has a place
-/// for them. Atomic. Throws CannotWrite, UsageError (extension), BadInput (array lengths, indices, positions not
-/// finite).
+/// glTF's y-up; `offset` in the root's extras), .xml and .landxml (LandXML 1.2, a TIN
+/// surface: northing, easting, height, `offset` added, with unit and CRS). Normals and texture coordinates go along
+/// where the format has a place for them. Atomic. Throws CannotWrite, UsageError (extension), BadInput (array lengths,
+/// indices, positions not finite).
 void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite = false);
 
 /// Is the extension one that write_mesh knows?

@@ -347,6 +347,8 @@ TriangleMesh mesh_terrain(const Terrain& terrain, const TerrainMeshOptions& opti
   }
   drop_unused_vertices(mesh);
   mesh.offset = offset_of(terrain.georef);
+  mesh.unit = terrain.georef.unit == "unit" ? "" : terrain.georef.unit;
+  if (terrain.georef.scale_x == 1 && terrain.georef.scale_y == 1) mesh.crs_wkt = terrain.georef.crs_wkt;
   context.report("mesh", 1);
   return mesh;
 }

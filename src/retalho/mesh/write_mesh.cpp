@@ -17,7 +17,8 @@ struct Format {
   const char* extension;
   Writer write;
 };
-constexpr Format kFormats[] = {{".ply", write_ply}, {".obj", write_obj}, {".stl", write_stl}, {".glb", write_glb}};
+constexpr Format kFormats[] = {{".ply", write_ply}, {".obj", write_obj},     {".stl", write_stl},
+                               {".glb", write_glb}, {".xml", write_landxml}, {".landxml", write_landxml}};
 
 std::string extension(const std::string& path) {
   std::string e = std::filesystem::path(path).extension().string();
@@ -56,7 +57,9 @@ void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrit
   const Format* const format = find_format(path);
   if (!format)
     throw UsageError(
-        fmt::format("'{}' does not end in .ply, .obj, .stl or .glb: the name tells the format of the mesh", path),
+        fmt::format(
+            "'{}' does not end in .ply, .obj, .stl, .glb, .xml or .landxml: the name tells the format of the mesh",
+            path),
         path);
   check_arrays(mesh, path);
   AtomicFile file(path, overwrite);

@@ -18,7 +18,7 @@ std::string wkt_of_epsg(int code) {
   return georef.crs_wkt;
 }
 
-int epsg_of(const std::string& wkt) {
+int epsg_named_by(const std::string& wkt) {
   if (wkt.empty()) return 0;
   register_gdal();
   const GdalMessages messages;
@@ -27,7 +27,12 @@ int epsg_of(const std::string& wkt) {
   const char* authority = crs.GetAuthorityName(nullptr);
   const char* code = crs.GetAuthorityCode(nullptr);
   if (!authority || !code || std::string_view(authority) != "EPSG") return 0;
-  const int number = std::atoi(code);
+  return std::atoi(code);
+}
+
+int epsg_of(const std::string& wkt) {
+  const int number = epsg_named_by(wkt);
+  if (number == 0) return 0;
   try {
     return wkt_of_epsg(number) == wkt ? number : 0;
   } catch (const Error&) {
