@@ -2,7 +2,7 @@
 # overloads: a float is an ArrayLike, too, and gives a float.
 from collections.abc import Callable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, Protocol, TypeAlias, TypedDict, overload
+from typing import Any, Final, Literal, Protocol, TypeAlias, TypedDict, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -22,6 +22,7 @@ Quantity: TypeAlias = Literal["height", "gradient", "slope", "aspect", "normal",
 Parameters: TypeAlias = Literal["uniform", "centripetal", "chord", "x"]
 Recovery: TypeAlias = Literal["smooth", "spr", "barycentric"]
 Layout: TypeAlias = Literal["delaunay", "midpoint"]
+Look: TypeAlias = tuple[bool, int, float, float]
 Samples: TypeAlias = Literal["parameter", "arc-length"]
 
 class _HasWkt(Protocol):
@@ -388,22 +389,14 @@ class TetraQuad:
     def to_bytes(self) -> bytes: ...
 
 class TileEntry:
-    @property
-    def row(self) -> int: ...
-    @property
-    def column(self) -> int: ...
-    @property
-    def file(self) -> str: ...
-    @property
-    def bytes(self) -> int: ...
-    @property
-    def vertices(self) -> int: ...
-    @property
-    def triangles(self) -> int: ...
-    @property
-    def checksum(self) -> str: ...
-    @property
-    def cells(self) -> tuple[int, int, int, int]: ...
+    row: Final[int]
+    column: Final[int]
+    file: Final[str]
+    bytes: Final[int]
+    vertices: Final[int]
+    triangles: Final[int]
+    checksum: Final[str]
+    cells: Final[tuple[int, int, int, int]]
 
 class TilePlan:
     def __init__(
@@ -415,12 +408,10 @@ class TilePlan:
     def settled(self) -> bool: ...
     @property
     def max_error(self) -> float | None: ...
-    def look(self, row: int, column: int) -> tuple[bool, int, float, float]: ...
-    def areas(self, looks: Sequence[tuple[bool, int, float, float]], row: int, column: int) -> list[bool]: ...
+    def look(self, row: int, column: int) -> Look: ...
+    def areas(self, looks: Sequence[Look], row: int, column: int) -> list[bool]: ...
     def count(self, row: int, column: int, max_error: float, areas: Sequence[bool]) -> int: ...
-    def settle(
-        self, looks: Sequence[tuple[bool, int, float, float]], count: Callable[[float], int]
-    ) -> TilePlan: ...
+    def settle(self, looks: Sequence[Look], count: Callable[[float], int]) -> TilePlan: ...
     @property
     def shape(self) -> tuple[int, int]: ...
     @property

@@ -324,7 +324,7 @@ def read_glb(path: pathlib.Path) -> tuple[Array, Array, Array]:
     q = np.array([x, y, z])
 
     def turn(v: Array) -> Array:
-        return v + 2 * np.cross(q, np.cross(q, v) + w * v)
+        return np.asarray(v + 2 * np.cross(q, np.cross(q, v) + w * v))
 
     return turn(p), turn(n), t
 
