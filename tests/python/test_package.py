@@ -110,6 +110,7 @@ def test_everything_public_is_stubbed_and_described() -> None:
         if inspect.isclass(thing) and not issubclass(thing, Exception):
             stub = next(n for n in STUB.body if isinstance(n, ast.ClassDef) and n.name == name)
             typed = {n.name for n in stub.body if isinstance(n, ast.FunctionDef)}
+            typed |= {n.target.id for n in stub.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)}
             public = {n for n in vars(thing) if not n.startswith("_")}
             assert public - typed == set(), f"{name} has attributes without types"
             assert thing.__module__ == "retalho"
