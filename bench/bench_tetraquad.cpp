@@ -4,6 +4,8 @@
 //   bench_tetraquad --value CASE:WHAT    CASE: torus8, torus16, bunny24, bunny32, bunny48, noise02, noise05, adaptive,
 //                                        bumps (bumps:gain: coefficients of a grid over the adaptive mesh's); all but
 //                                        bumps with -cg or -local behind them for the other ways to fit
+//                                        closed: open24, open48, open_adaptive, of all closed scans together;
+//                                        tenmillion: a torus of 10^7 points at 32
 //                                        poisson: CGAL's reconstruction of the bunny with its defaults beside the fit
 //                                        at 24 (poisson:ratio), with a mesh four times as fine beside the fit at 32
 //                                        (poisson:fine_ratio); distances of all to triangles
@@ -29,6 +31,7 @@
 
 #include "peers/poisson.h"
 #include "retalho/cloud/cloud.h"
+#include "retalho/cloud/normals.h"
 #include "retalho/mesh/tetraquad_mesh.h"
 #include "retalho/tetraquad/adaptive.h"
 #include "retalho/tetraquad/fit.h"
@@ -258,7 +261,42 @@ Values run_poisson() {
   return values;
 }
 
+/// Scans of closed shapes, by `closed`: open edges of all together on two grids and on an adaptive mesh.
+Values run_closed() {
+  Values values;
+  for (const char* name : {"bunny.ply", "hand.xyz", "elephant.xyz", "oni.xyz", "rocker_arm.ply", "gargoyle.ply",
+                           "armadillo_nonormals.ply"}) {
+    PointCloud cloud = read_points(data(name));
+    if (cloud.normals.empty()) cloud.normals = estimate_normals(cloud.positions, {}, nullptr, one_thread());
+    for (const int resolution : {24, 48, 0}) {
+      const TetraQuadFitOptions options = {.resolution = std::max(2, resolution),
+                                           .smoothness = resolution == 0 ? 0.1 : 1.0,
+                                           .closed = true,
+                                           .solver = TetraQuadSolver::cg};
+      const TetraQuad surface =
+          resolution == 0 ? fit_tetraquad_adaptive(cloud, {.coefficients = 29900}, options, nullptr, one_thread())
+                          : fit_tetraquad(cloud, options, nullptr, one_thread());
+      const auto open = static_cast<double>(
+          topology_of(mesh_tetraquad(TetraQuadField(surface), {}, nullptr, one_thread())).open_edges);
+      values[resolution == 0 ? "open_adaptive" : fmt::format("open{}", resolution)] += open;
+    }
+  }
+  return values;
+}
+
+/// Ten million points of the torus, at 32.
+Values run_ten_million() {
+  const PointCloud cloud = torus(10000000, 1);
+  Values values = measure(cloud, torus(20000, 2), {.resolution = 32, .solver = TetraQuadSolver::cg},
+                          [](Vec3 p) { return std::abs(std::hypot(std::hypot(p.x, p.y) - kRing, p.z) - kTube); });
+  values["cloud_memory"] =
+      static_cast<double>(cloud.positions.capacity() + cloud.normals.capacity()) * sizeof(Vec3) / (1 << 20);
+  return values;
+}
+
 Values run_case(const std::string& whole_name) {
+  if (whole_name == "closed") return run_closed();
+  if (whole_name == "tenmillion") return run_ten_million();
   if (whole_name == "bumps") return run_bumps();
   if (whole_name == "poisson") return run_poisson();
   const std::size_t dash = whole_name.find('-');
@@ -441,9 +479,10 @@ int main(int argc, char** argv) {
     fmt::print("{{\"value\": {:.6g}}}\n", value);
     return 0;
   }
-  std::vector<std::string> names = {
-      "torus8",     "torus16",       "bunny24",       "bunny32",  "bunny48",     "noise02", "noise05", "bunny24-cg",
-      "bunny48-cg", "torus16-local", "bunny24-local", "adaptive", "adaptive-cg", "bumps",   "poisson", "rays"};
+  std::vector<std::string> names = {"torus8",        "torus16",    "bunny24",     "bunny32",    "bunny48",
+                                    "noise02",       "noise05",    "bunny24-cg",  "bunny48-cg", "torus16-local",
+                                    "bunny24-local", "adaptive",   "adaptive-cg", "bumps",      "poisson",
+                                    "closed",        "tenmillion", "rays"};
   if (argc > 2 && std::string(argv[1]) == "--case") names = {argv[2]};
   for (const std::string& name : names) {
     fmt::print("{}\n", name);

@@ -28,6 +28,7 @@ struct Options {
   std::optional<std::size_t> adaptive;
   double quantile = 0.99, tolerance = 0, smoothness = 1;
   int neighbours = 16;
+  bool closed = false;
 };
 
 /// Gives points without normals estimated ones, and says how sure they are.
@@ -88,6 +89,7 @@ void run(const Program& program, const Options& options) {
   TetraQuadFitOptions fit;
   fit.resolution = options.resolution.value_or(32);
   fit.smoothness = options.smoothness;
+  fit.closed = options.closed;
   fit.solver = static_cast<TetraQuadSolver>(solver);
   fit.split = split == 0 ? TetSplit::five : TetSplit::kuhn;
   TetraQuadFitReport report;
@@ -201,6 +203,7 @@ void add_reconstruct(CLI::App& root, Program& program) {
           "--fit", options->fit,
           "How: cholesky (default), cg (the same with less memory, slower), local (no equations: quick, rough)")
       ->type_name("HOW");
+  command->add_flag("--closed", options->closed, "The shape is closed: close holes of any size");
   command->add_option("--tetrahedra", options->tetrahedra, "Writes the tetrahedra as well, for ParaView: .vtk")
       ->type_name("FILE");
   command->callback([options, &program] { run(program, *options); });

@@ -1,6 +1,9 @@
 // The program's reconstruct command, run as a user runs it.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
+
 #include "cli/program.h"
 #include "retalho/core/atomic_file.h"
 #include "tetraquad/shapes.h"
@@ -91,6 +94,60 @@ TEST(Reconstruct, ByConjugateGradientsAndLocally) {
   EXPECT_NEAR(residual("cg") / direct, 1, 0.1);
   EXPECT_GT(residual("local"), 2 * direct);
   EXPECT_EQ(run(folder, "reconstruct torus.xyz -o u.ply --fit lu").code, 2);
+}
+
+TEST(Reconstruct, ClosesAShapeThatIsSaidToBeClosed) {
+  const ScratchFolder folder;
+  PointCloud half = sphere_points(6000, {0, 0, 0}, 1), cap;
+  for (std::size_t k = 0; k < half.positions.size(); ++k)
+    if (half.positions[k].z > -0.6) {
+      cap.positions.push_back(half.positions[k]);
+      cap.normals.push_back(half.normals[k]);
+    }
+  folder.put("cap.xyz", xyz_of(cap));
+  const Outcome open = run(folder, "reconstruct cap.xyz -o open.ply --resolution 16 --json");
+  ASSERT_EQ(open.code, 0) << open.err;
+  EXPECT_GT(open.json()["open_edges"].get<int>(), 20);
+  const Outcome closed = run(folder, "reconstruct cap.xyz -o closed.ply --resolution 16 --closed --json");
+  ASSERT_EQ(closed.code, 0) << closed.err;
+  EXPECT_EQ(closed.json()["open_edges"], 0);
+  EXPECT_EQ(closed.json()["genus"], 0);
+}
+
+TEST(Reconstruct, MillimetresFiveThousandKilometresOut) {
+  // A field of 20 m with waves of 3 mm, written with a tenth of a millimetre, far from the origin as surveys are.
+  const ScratchFolder folder;
+  Random random(91);
+  std::string text;
+  const auto height = [](double x, double y) { return 300 + 0.003 * std::sin(x) * std::cos(0.8 * y); };
+  for (int n = 0; n < 20000; ++n) {
+    const double x = random.uniform(0, 20), y = random.uniform(0, 20);
+    const double east = -0.003 * std::cos(x) * std::cos(0.8 * y), north = 0.0024 * std::sin(x) * std::sin(0.8 * y);
+    text +=
+        fmt::format("{:.4f} {:.4f} {:.4f} {:.9f} {:.9f} {:.9f}\n", 5e6 + x, 5.5e6 + y, height(x, y),
+                    east / std::sqrt(1 + east * east + north * north),
+                    north / std::sqrt(1 + east * east + north * north), 1 / std::sqrt(1 + east * east + north * north));
+  }
+  folder.put("field.xyz", text);
+  ASSERT_EQ(run(folder, "reconstruct field.xyz -o field.retalho --resolution 24").code, 0);
+  ASSERT_EQ(run(folder, "mesh field.retalho -o field.obj").code, 0);
+  std::istringstream lines(read_file(folder / "field.obj"));
+  std::size_t seen = 0;
+  double lowest = 1e9, highest = -1e9;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("v ", 0) != 0) continue;
+    std::istringstream words(line.substr(2));
+    Vec3 p;
+    words >> p.x >> p.y >> p.z;
+    p = p - Vec3{5e6, 5.5e6, 0};
+    if (p.x < 0.2 || p.x > 19.8 || p.y < 0.2 || p.y > 19.8) continue;
+    EXPECT_NEAR(p.z, height(p.x, p.y), 2e-4);
+    lowest = std::min(lowest, p.z);
+    highest = std::max(highest, p.z);
+    ++seen;
+  }
+  EXPECT_GT(seen, 1000U);
+  EXPECT_NEAR(highest - lowest, 0.006, 3e-4);
 }
 
 TEST(Reconstruct, SaysWhatIsWrong) {

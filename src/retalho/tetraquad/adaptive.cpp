@@ -19,11 +19,25 @@ namespace {
 
 constexpr int kPasses = 24;
 
+/// All cubes of the box and one more on each side: a surface that is to be closed may have to be followed anywhere.
+void fill_box(std::vector<LatticePoint>& cubes) {
+  LatticePoint low = cubes[0], high = low;
+  for (const LatticePoint& cube : cubes)
+    for (std::size_t d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], cube[d]);
+      high[d] = std::max(high[d], cube[d]);
+    }
+  cubes.clear();
+  for (std::int32_t i = low[0] - 1; i <= high[0] + 1; ++i)
+    for (std::int32_t j = low[1] - 1; j <= high[1] + 1; ++j)
+      for (std::int32_t k = low[2] - 1; k <= high[2] + 1; ++k) cubes.push_back({i, j, k});
+}
+
 class AdaptiveFit {
  public:
   AdaptiveFit(const PointCloud& cloud, const TetraQuadAdaptiveOptions& adaptive, const TetraQuadFitOptions& options,
               TetraQuadFitReport& report, const Context& context)
-      : adaptive_(adaptive), options_(options), report_(report), context_(context) {
+      : cloud_(cloud), adaptive_(adaptive), options_(options), report_(report), context_(context) {
     TetraQuadFitOptions roots = options;
     roots.resolution = adaptive.roots;
     roots.split = TetSplit::kuhn;
@@ -36,6 +50,7 @@ class AdaptiveFit {
     for (const TetPlace& place : places)
       for (int side = 0; side < 27; ++side)
         cubes.push_back({place.cell[0] + side % 3 - 1, place.cell[1] + side / 3 % 3 - 1, place.cell[2] + side / 9 - 1});
+    if (options.closed) fill_box(cubes);
     forest_ = TetForest(std::move(cubes));
     // The area that holds points, counted in cubes of a quarter of a root's edge.
     std::set<LatticePoint> cells;
@@ -192,7 +207,10 @@ class AdaptiveFit {
     std::unordered_set<std::uint64_t> own_vertices;
     for (const LatticePoint& v : surface.mesh.lattice) own_vertices.insert(cell_key(v));
 
-    for (int round = 0; round < adaptive_.growth; ++round) {
+    std::optional<ClosedGuide> guide;
+    if (options_.closed && !open_faces(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size())).empty())
+      guide.emplace(make_guide(cloud_, guide_options(), context_));
+    for (int round = 0; round < (guide ? kClosingRounds : adaptive_.growth); ++round) {
       const HalfFaces faces(surface.mesh.tets, surface.mesh.lattice.size());
       std::vector<std::uint32_t> grown = leaves_of(surface.mesh);
       std::unordered_set<std::uint32_t> in(grown.begin(), grown.end());
@@ -210,8 +228,8 @@ class AdaptiveFit {
       std::vector<char> is_new(surface.quadrics.size(), 0);
       for (std::size_t v = 0; v < is_new.size(); ++v)
         is_new[v] = own_vertices.contains(cell_key(surface.mesh.lattice[v])) ? 0 : 1;
-      solve_added(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size()), is_new, bins(), weights_,
-                  options_, context_);
+      solve_added(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size()), is_new, bins(),
+                  guide ? &*guide : nullptr, weights_, options_, context_);
     }
     take_back(surface, own);
     active = kept(surface, leaves_of(surface.mesh), counts);
@@ -221,6 +239,13 @@ class AdaptiveFit {
     report_.open_faces = open_faces(surface, HalfFaces(surface.mesh.tets, surface.mesh.lattice.size())).size();
     measure(TetraQuadField(surface), SampleRuns(samples_, surface.mesh, context_),
             {.max_error = adaptive_.max_error, .quantile = adaptive_.quantile}, report_);
+  }
+
+  /// About as fine as the mesh is on the whole.
+  TetraQuadFitOptions guide_options() const {
+    TetraQuadFitOptions grid = options_;
+    grid.resolution = 48;
+    return grid;
   }
 
   /// The leaf of each tetrahedron.
@@ -274,6 +299,7 @@ class AdaptiveFit {
     surface = moved_to(surface, make_tet_mesh(samples_.origin, samples_.step, surface.mesh.forest, good), nullptr);
   }
 
+  const PointCloud& cloud_;
   const TetraQuadAdaptiveOptions& adaptive_;
   const TetraQuadFitOptions& options_;
   TetraQuadFitReport& report_;

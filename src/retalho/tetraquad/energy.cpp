@@ -222,6 +222,22 @@ void add_samples(Energy& energy, const TetMesh& mesh, const SampleRuns& samples,
   }
 }
 
+void add_guides(Energy& energy, const TetMesh& mesh, std::span<const Guide> guides) {
+  for (const Guide& guide : guides) {
+    const TetCorners& tet = mesh.tets[guide.tet];
+    const TetBarycentric b = mesh.frame(guide.tet).barycentric(guide.place);
+    const double scale = std::sqrt(guide.weight) / mesh.size(guide.tet);
+    Eigen::Matrix<double, 40, 1> row;
+    for (std::size_t k = 0; k < 4; ++k)
+      row.segment<10>(static_cast<Eigen::Index>(10 * k)) =
+          scale * b[k] * monomials(guide.place - to_vec(mesh.lattice[tet[k]])).transpose();
+    scatter(energy.matrix, tet, row * row.transpose(), 1);
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t i = 0; i < 10; ++i)
+        energy.right[kBlock * tet[k] + i] += scale * guide.value * row[static_cast<Eigen::Index>(10 * k + i)];
+  }
+}
+
 /// What an unknown of a vertex of size h is multiplied by to be the quadric's coefficient.
 double unit_at(double h, std::size_t n) {
   return n == 0 ? h : n < 4 ? 1 : 1 / h;
@@ -269,9 +285,10 @@ CgNotes solve_energy_by_cg(const Energy& energy, std::vector<Quadric>& quadrics,
 }
 
 Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, const SampleRuns& samples,
-                       const EnergyWeights& weights, const Context& context) {
+                       const EnergyWeights& weights, const Context& context, std::span<const Guide> guides) {
   Energy energy{empty_matrix(mesh, faces), std::vector<double>(kBlock * mesh.lattice.size(), 0.0), 0, {}};
   add_samples(energy, mesh, samples, weights);
+  add_guides(energy, mesh, guides);
   context.check();
   context.report("assemble", 0.5);
   std::map<std::array<std::int32_t, 9>, Eigen::MatrixXd> bending;

@@ -22,6 +22,14 @@
 
 namespace retalho {
 
+/// A value that is wanted at a place, without a normal.
+struct Guide {
+  std::uint32_t tet = 0;
+  Vec3 place;
+  double value = 0;   ///< in lattice units
+  double weight = 1;  ///< against a tetrahedron's share of the points
+};
+
 struct EnergyWeights {
   double point = 1;   ///< w: the area that holds points, in steps^2, over their number
   double normal = 1;  ///< alpha
@@ -40,7 +48,7 @@ struct Energy {
 /// Blocks that depend on a tetrahedron's or a face pair's shape only are made once a shape. Cost: about 2 us a sample,
 /// 3 us a tetrahedron; no memory that grows with the samples.
 Energy assemble_energy(const TetMesh& mesh, const HalfFaces& faces, const SampleRuns& samples,
-                       const EnergyWeights& weights, const Context& context = {});
+                       const EnergyWeights& weights, const Context& context = {}, std::span<const Guide> guides = {});
 
 /// What unknown `n` of a vertex is multiplied by to be the quadric's coefficient.
 double unit_of(const Energy& energy, std::size_t vertex, std::size_t n);

@@ -42,7 +42,8 @@ std::vector<TetPlace> first_band(std::vector<TetPlace> band, TetSplit split) {
 }
 
 TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const TetraQuadErrorOptions& error,
-              const TetraQuad* before, TetraQuadFitReport* report_out, const Context& context) {
+              const TetraQuad* before, const ClosedGuide* given, TetraQuadFitReport* report_out,
+              const Context& context) {
   check_options(options);
   TetraQuadFitReport report;
   report.resolution = options.resolution;
@@ -63,12 +64,17 @@ TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const
                 options, report, context);
 
   report.stray = drop_stray(surface, faces, with_points);
-  report.growth_rounds = grow(
-      surface, faces, data, kReach, options.growth,
-      [&](TetraQuad& grown, const HalfFaces& its_faces, const std::vector<char>& is_new) {
-        solve_added(grown, its_faces, is_new, bins ? &*bins : nullptr, weights, options, context);
-      },
-      context);
+  const ClosedGuide* guide = nullptr;
+  const Fill fill = [&](TetraQuad& grown, const HalfFaces& its_faces, const std::vector<char>& is_new) {
+    solve_added(grown, its_faces, is_new, bins ? &*bins : nullptr, guide, weights, options, context);
+  };
+  report.growth_rounds = grow(surface, faces, data, kReach, options.growth, fill, nullptr, context);
+  std::optional<ClosedGuide> made;
+  if (options.closed && !open_faces(surface, faces).empty()) {
+    if (given == nullptr) made.emplace(make_guide(cloud, options, context));
+    guide = made ? &*made : given;
+    report.growth_rounds += grow(surface, faces, data, kReach, kClosingRounds, fill, guide, context);
+  }
   report.stray += drop_stray(surface, faces, with_points);
   report.open_faces = open_faces(surface, faces).size();
   measure(TetraQuadField(surface), SampleRuns(samples, surface.mesh, context), error, report);
@@ -78,9 +84,14 @@ TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const
 
 }  // namespace
 
+TetraQuad fit_along(const PointCloud& cloud, const TetraQuadFitOptions& options, const ClosedGuide& guide,
+                    const Context& context) {
+  return fit(cloud, options, {}, nullptr, &guide, nullptr, context);
+}
+
 TetraQuad fit_tetraquad(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport* report,
                         const Context& context) {
-  return fit(cloud, options, {}, nullptr, report, context);
+  return fit(cloud, options, {}, nullptr, nullptr, report, context);
 }
 
 TetraQuad fit_tetraquad_to(const PointCloud& cloud, const TetraQuadErrorOptions& error,
@@ -97,7 +108,7 @@ TetraQuad fit_tetraquad_to(const PointCloud& cloud, const TetraQuadErrorOptions&
   int iterations = 0;
   while (true) {
     TetraQuadFitReport report;
-    TetraQuad finer = fit(cloud, now, error, surface.quadrics.empty() ? nullptr : &surface, &report, context);
+    TetraQuad finer = fit(cloud, now, error, surface.quadrics.empty() ? nullptr : &surface, nullptr, &report, context);
     surface = std::move(finer);
     iterations += report.iterations;
     report.iterations = iterations;

@@ -30,6 +30,9 @@ struct TetraQuadFitOptions {
   /// At most so many times tetrahedra are added where the surface leaves those that there are, up to two cubes beyond
   /// those with points. What does not close a hole is taken back: larger holes and the border of open data stay open.
   int growth = 3;
+  /// The shape is known to be closed: where the points have holes, however large, the surface follows a rough closed
+  /// fit of them all, of half the resolution, a quarter and so on.
+  bool closed = false;
   TetraQuadSolver solver = TetraQuadSolver::cholesky;
   double cg_tolerance = 1e-4;  ///< residual of `cg`, preconditioned, against the right-hand side; above 0
 };

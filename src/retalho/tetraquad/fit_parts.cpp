@@ -94,8 +94,11 @@ void solve_surface(TetraQuad& surface, const HalfFaces& faces, const SampleRuns&
 }
 
 void solve_added(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new, const SampleBins* bins,
-                 const EnergyWeights& weights, const TetraQuadFitOptions& options, const Context& context) {
-  if (options.solver == TetraQuadSolver::local)
+                 const ClosedGuide* guide, const EnergyWeights& weights, const TetraQuadFitOptions& options,
+                 const Context& context) {
+  if (guide != nullptr)
+    guide->fill(surface, is_new);
+  else if (options.solver == TetraQuadSolver::local)
     fit_locally(*bins, surface.mesh, is_new, vertex_sizes(surface.mesh), surface.quadrics, context);
   else
     solve_new(surface, faces, is_new, weights, context);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "retalho/tetraquad/closing.h"
 #include "retalho/tetraquad/energy.h"
 #include "retalho/tetraquad/fit.h"
 
@@ -24,9 +25,16 @@ void solve_surface(TetraQuad& surface, const HalfFaces& faces, const SampleRuns&
                    const TetraQuad* before, const EnergyWeights& weights, const TetraQuadFitOptions& options,
                    TetraQuadFitReport& report, const Context& context);
 
-/// Finds the quadrics of the marked vertices, the others stay.
+/// A fit on a grid that is closed along a guide.
+TetraQuad fit_along(const PointCloud& cloud, const TetraQuadFitOptions& options, const ClosedGuide& guide,
+                    const Context& context);
+
+inline constexpr int kClosingRounds = 60;  ///< of growth, where the surface is to be closed
+
+/// Finds the quadrics of the marked vertices, the others stay. `guide`: null unless the surface is to be closed.
 void solve_added(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new, const SampleBins* bins,
-                 const EnergyWeights& weights, const TetraQuadFitOptions& options, const Context& context);
+                 const ClosedGuide* guide, const EnergyWeights& weights, const TetraQuadFitOptions& options,
+                 const Context& context);
 
 /// Sizes and residuals of the finished surface.
 void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQuadErrorOptions& error,

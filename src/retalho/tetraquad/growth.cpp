@@ -32,6 +32,10 @@ bool crosses_face(const TetCubic& c, std::size_t corner) {
   return false;
 }
 
+Vec3 middle_of(const TetMesh& mesh, const LatticePoint& cell) {
+  return mesh.origin + mesh.step * Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+}
+
 bool is_near(const LatticePoint& cell, const std::vector<LatticePoint>& data, int reach) {
   LatticePoint probe{};
   for (int i = -reach; i <= reach; ++i)
@@ -234,7 +238,7 @@ std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces&
 }
 
 int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach, int rounds,
-         const Fill& fill, const Context& context) {
+         const Fill& fill, const ClosedGuide* guide, const Context& context) {
   const std::vector<TetPlace> own = surface.mesh.places;
   std::unordered_set<std::uint64_t> own_vertices;
   for (const LatticePoint& v : surface.mesh.lattice) own_vertices.insert(cell_key(v));
@@ -248,7 +252,8 @@ int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& 
       for (int side = 0; side < 27; ++side) {
         const LatticePoint cell = {beyond.cell[0] + side % 3 - 1, beyond.cell[1] + side / 3 % 3 - 1,
                                    beyond.cell[2] + side / 9 - 1};
-        if (!seen.insert(cell_key(cell)).second || !is_near(cell, data, reach)) continue;
+        if (!seen.insert(cell_key(cell)).second) continue;
+        if (guide != nullptr ? !guide->holds(middle_of(surface.mesh, cell)) : !is_near(cell, data, reach)) continue;
         for (int type = 0; type < tets_of_cube(surface.mesh.split); ++type)
           places.push_back({cell, static_cast<std::uint8_t>(type)});
       }

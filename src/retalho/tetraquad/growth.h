@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "retalho/core/context.h"
+#include "retalho/tetraquad/closing.h"
 #include "retalho/tetraquad/energy.h"
 #include "retalho/tetraquad/tetraquad.h"
 
@@ -33,9 +34,9 @@ std::vector<std::uint32_t> open_faces(const TetraQuad& surface, const HalfFaces&
 using Fill = std::function<void(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new)>;
 
 /// Closes holes: adds all tetrahedra of the cubes round those faces, as long as a cube is within `reach` cubes of one
-/// of `data` (ascending), at most `rounds` times. All that has been added is filled together, the rest stays. In the
-/// end only what closes a hole is kept. Returns the number of rounds.
+/// of `data` (ascending; with a guide: anywhere in its box), at most `rounds` times. All that has been added is filled
+/// together, the rest stays. In the end only what closes a hole is kept. Returns the number of rounds.
 int grow(TetraQuad& surface, HalfFaces& faces, const std::vector<LatticePoint>& data, int reach, int rounds,
-         const Fill& fill, const Context& context);
+         const Fill& fill, const ClosedGuide* guide, const Context& context);
 
 }  // namespace retalho

@@ -151,12 +151,7 @@ std::vector<char> start_from(const TetraQuad& other, const TetMesh& mesh, std::v
       left[v] = 1;
       continue;
     }
-    Quadric& q = quadrics[v];
-    q[0] = jet->value / mesh.step;
-    q[1] = jet->gradient.x * 2 / 3;
-    q[2] = jet->gradient.y * 2 / 3;
-    q[3] = jet->gradient.z * 2 / 3;
-    for (std::size_t n = 0; n < 6; ++n) q[4 + n] = jet->hessian[n] * mesh.step / (n < 3 ? 6 : 3);
+    quadrics[v] = interpolating_quadric(*jet, mesh.step);
   }
   return left;
 }

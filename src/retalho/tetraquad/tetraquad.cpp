@@ -45,18 +45,22 @@ TetCubic ordinates(const TetraQuad& surface, std::size_t tet) {
   return ordinates(q, x);
 }
 
+Quadric interpolating_quadric(const Jet3& jet, double step) {
+  Quadric q{};
+  q[0] = jet.value / step;
+  q[1] = jet.gradient.x * 2 / 3;
+  q[2] = jet.gradient.y * 2 / 3;
+  q[3] = jet.gradient.z * 2 / 3;
+  for (std::size_t n = 0; n < 6; ++n) q[4 + n] = jet.hessian[n] * step / (n < 3 ? 6 : 3);
+  return q;
+}
+
 TetraQuad quasi_interpolant(TetMesh mesh, const std::function<Jet3(Vec3)>& f) {
   TetraQuad surface;
   surface.quadrics.reserve(mesh.lattice.size());
   for (std::size_t v = 0; v < mesh.lattice.size(); ++v) {
     const Jet3 jet = f(mesh.position(v));
-    Quadric q{};
-    q[0] = jet.value / mesh.step;
-    q[1] = jet.gradient.x * 2 / 3;
-    q[2] = jet.gradient.y * 2 / 3;
-    q[3] = jet.gradient.z * 2 / 3;
-    for (std::size_t n = 0; n < 6; ++n) q[4 + n] = jet.hessian[n] * mesh.step / (n < 3 ? 6 : 3);
-    surface.quadrics.push_back(q);
+    surface.quadrics.push_back(interpolating_quadric(jet, mesh.step));
   }
   surface.mesh = std::move(mesh);
   return surface;

@@ -46,6 +46,9 @@ struct TetraQuad {
 /// The ordinates of one tetrahedron, in steps of the grid.
 TetCubic ordinates(const TetraQuad& surface, std::size_t tet);
 
+/// A vertex's quadric of the quasi-interpolant, from the function's value, gradient and second derivatives there.
+Quadric interpolating_quadric(const Jet3& jet, double step);
+
 /// The local quasi-interpolant of a smooth function: the quadric of each vertex is f + (2/3) grad f . d +
 /// (1/6) d' Hess f d. Every cubic is reproduced; the error of others falls with step^4.
 TetraQuad quasi_interpolant(TetMesh mesh, const std::function<Jet3(Vec3)>& f);
