@@ -6,6 +6,7 @@
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/model/tiled.h"
+#include "retalho/tiles/reader.h"
 #include "retalho/tin/refine.h"
 #include "table.h"
 #include "visibility_errors.h"
@@ -20,6 +21,7 @@ struct Options {
   BudgetFlags budget;
   VisibilityFlags visibility;
   bool markdown = false, csv = false;
+  std::size_t tile_memory = TileReader::kBound >> 20;  // MB
 };
 
 /// Every kind on the same TIN: the paper's gradients first, then the better ones.
@@ -76,6 +78,59 @@ std::vector<ModelReport> compare_models(const Options& options, const Raster& ra
   return reports;
 }
 
+/// Do all models stand for this grid in tiles, and can the grid be read by windows? Then nothing is held whole.
+bool can_stream(const Options& options) {
+  if (options.models.empty() || options.visibility.radius) return false;
+  for (const std::string& path : options.models)
+    if (!is_tiled_model(path)) return false;
+  try {
+    const Raster place = inspect_raster(options.dem, {.band = options.grid.band});
+    for (const std::string& path : options.models) {
+      const TiledIndex index = read_tiled_index(path);
+      if (index.columns != place.columns || index.rows != place.rows ||
+          index.georef.origin_x != place.georef.origin_x || index.georef.origin_y != place.georef.origin_y ||
+          index.cell_width != place.cell_width || index.cell_height != place.cell_height)
+        return false;
+    }
+  } catch (const BadInput&) {  // of a format without windows
+    return false;
+  }
+  return true;
+}
+
+std::vector<ModelReport> compare_tiles(const Program& program, const Options& options, const Context& context) {
+  std::vector<ModelReport> reports;
+  for (const std::string& path : options.models) {
+    TileReader reader(path, options.tile_memory << 20);
+    const TiledIndex& index = reader.index();
+    ReadOptions read{.band = options.grid.band, .nodata = options.grid.nodata};
+    check_same_crs(index.georef, path, inspect_raster(options.dem, read).georef, options.dem);
+    TiledFacts facts;
+    ModelReport report;
+    report.errors = assess_tiles(
+        reader,
+        [&](const CellWindow& window) {
+          read.window = window;
+          return read_raster(options.dem, read, nullptr, context);
+        },
+        index.max_error, &facts, context);
+    report.name = path;
+    report.surface = surface_name(index.surface);
+    report.gradients = gradient_name(facts.gradients);
+    if (index.surface == SurfaceKind::clough_tocher)
+      report.cross_derivative = cross_derivative_name(CrossDerivative::perpendicular);
+    report.vertices = facts.vertices;
+    report.triangles = facts.triangles;
+    report.coefficients = facts.vertices * (index.surface == SurfaceKind::linear ? 1 : 3);
+    report.numbers = report.coefficients + 2 * facts.vertices;
+    report.tolerance = index.max_error;
+    report.bytes = model_size(path);
+    reports.push_back(report);
+    program.say(fmt::format("{}: {} tiles read one by one", path, index.tiles.size()));
+  }
+  return reports;
+}
+
 Table table_of(const std::vector<ModelReport>& reports, bool with_kind, const VisibilityErrors* sight) {
   std::vector<std::string> header{"model"};
   if (with_kind) header.push_back("surface");
@@ -116,14 +171,22 @@ void run(const Program& program, const Options& options) {
   if (!options.visibility.maps.empty() && !options.visibility.radius)
     throw UsageError("--visibility-maps needs --visibility RADIUS (0: no limit)", {}, "--visibility-maps");
   const Context context = program.context();
-  RasterSummary summary;
-  const Raster raster = load_grid(program, options.dem, options.grid, summary, context);
+  if (options.tile_memory < 1) throw UsageError("--tile-memory must be 1 MB or more", {}, "--tile-memory");
   const bool fitted = options.models.empty();
   std::optional<VisibilityErrors> sight;
-  if (options.visibility.radius) sight.emplace(program, options.visibility, raster, context);
+  std::vector<ModelReport> reports;
+  RasterSummary summary;
+  std::optional<Raster> raster;
+  if (can_stream(options)) {
+    reports = compare_tiles(program, options, context);
+  } else {
+    raster = load_grid(program, options.dem, options.grid, summary, context);
+    if (options.visibility.radius) sight.emplace(program, options.visibility, *raster, context);
+    VisibilityErrors* maps = sight ? &*sight : nullptr;
+    reports = fitted ? compare_kinds(program, options, *raster, summary, maps, context)
+                     : compare_models(options, *raster, maps, context);
+  }
   VisibilityErrors* seen = sight ? &*sight : nullptr;
-  const std::vector<ModelReport> reports = fitted ? compare_kinds(program, options, raster, summary, seen, context)
-                                                  : compare_models(options, raster, seen, context);
   if (seen != nullptr) seen->write_pictures();
   if (program.json) {
     nlohmann::ordered_json models = nlohmann::ordered_json::array();
@@ -161,6 +224,10 @@ void add_compare(CLI::App& root, Program& program) {
   add_budget_flags(*command, options->budget);
   add_grid_flags(*command, options->grid);
   add_visibility_flags(*command, options->visibility);
+  command
+      ->add_option("--tile-memory", options->tile_memory,
+                   "Tiled models: how much of them is kept in memory (default 512)")
+      ->type_name("MB");
   command->add_flag("--markdown", options->markdown, "The table as Markdown");
   command->add_flag("--csv", options->csv, "The table as CSV");
   command->callback([options, &program] { run(program, *options); });

@@ -13,6 +13,7 @@
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/quantities.h"
+#include "retalho/tiles/reader.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -29,6 +30,7 @@ struct Options {
   std::vector<std::string> what;
   std::vector<std::string> at;
   bool cog = false;
+  std::size_t tile_memory = TileReader::kBound >> 20;  // MB
   bool set(What w) const { return std::find(what.begin(), what.end(), kWhat[w]) != what.end(); }
 };
 
@@ -123,6 +125,86 @@ std::vector<double> quantity_on(const Target& target, const TerrainEvaluator& ev
   return values;
 }
 
+/// What the choice of the target needs of a tiled model.
+Terrain frame_of(const TiledIndex& index) {
+  Terrain frame;
+  frame.georef = index.georef;
+  frame.grid.columns = index.columns;
+  frame.grid.rows = index.rows;
+  frame.grid.cell_width = index.cell_width;
+  frame.grid.cell_height = index.cell_height;
+  return frame;
+}
+
+std::size_t bound_of(const Options& options) {
+  if (options.tile_memory < 1) throw UsageError("--tile-memory must be 1 MB or more", {}, "--tile-memory");
+  return options.tile_memory << 20;
+}
+
+double quantity(What what, double height_here, Vec2 gradient) {
+  if (what == height || std::isnan(height_here)) return height_here;
+  return what == slope ? slope_degrees(gradient) : aspect_degrees(gradient);
+}
+
+/// Rows are made as they are written, from the tiles that they need. Returns how many cells have data.
+std::size_t write_tiles(const Options& options, TileReader& reader, const Target& target, What what,
+                        const WriteOptions& how, const Context& context) {
+  std::size_t valid = 0;
+  std::vector<double> heights;
+  std::vector<Vec2> gradients;
+  write_rows(
+      target.raster, options.output, how,
+      [&](int first, int count, std::span<float> out) {
+        const SampledRows rows{target.origin, target.step, target.raster.columns, first, count};
+        heights.assign(out.size(), kNan);
+        if (what == curvature) {
+          for (std::size_t k = 0; k < out.size(); ++k) {
+            const auto column = static_cast<int>(k % static_cast<std::size_t>(rows.columns)),
+                       row = first + static_cast<int>(k / static_cast<std::size_t>(rows.columns));
+            const auto jet = reader.jet({rows.origin.x + column * rows.step.x, rows.origin.y - row * rows.step.y});
+            if (jet) heights[k] = mean_curvature(*jet);
+          }
+        } else {
+          gradients.assign(what == height ? 0 : out.size(), {});
+          sample_rows(reader, rows, heights, gradients, context);
+          for (std::size_t k = 0; what != height && k < heights.size(); ++k)
+            heights[k] = quantity(what, heights[k], gradients[k]);
+        }
+        for (std::size_t k = 0; k < out.size(); ++k) {
+          out[k] = static_cast<float>(heights[k]);
+          valid += std::isnan(heights[k]) ? 0 : 1;
+        }
+      },
+      context);
+  return valid;
+}
+
+/// Where `--like` says, without its heights.
+Target target_like_place(const Options& options, const Terrain& frame) {
+  Target target;
+  target.raster = inspect_raster(options.like);
+  check_same_crs(frame.georef, options.model, target.raster.georef, options.like);
+  const Georef &from = target.raster.georef, &to = frame.georef;
+  target.origin = to.to_local(from.to_crs({0, 0}));
+  target.step = {target.raster.cell_width * to.scale_x / from.scale_x,
+                 target.raster.cell_height * to.scale_y / from.scale_y};
+  return target;
+}
+
+void say_sampled(const Program& program, const Options& options, const Target& target, What what, std::size_t valid) {
+  if (valid == 0) program.say("warning: the model has no data at any cell of this raster");
+  const nlohmann::ordered_json json = {{"what", kWhat[what]},
+                                       {"columns", target.raster.columns},
+                                       {"rows", target.raster.rows},
+                                       {"cell_width", target.raster.cell_width},
+                                       {"cell_height", target.raster.cell_height},
+                                       {"cells", target.raster.cells()},
+                                       {"valid_cells", valid}};
+  if (program.json) return program.print(json);
+  program.say(fmt::format("{}: {} on {} x {} cells, {} with data", options.output, kWhat[what], target.raster.columns,
+                          target.raster.rows, valid));
+}
+
 void sample_raster(const Program& program, const Options& options) {
   if (options.what.size() > 1)
     throw UsageError("a raster holds one quantity: give one --what, or ask for points with --at", {}, "--what");
@@ -134,6 +216,15 @@ void sample_raster(const Program& program, const Options& options) {
                options.cog ? std::vector<std::string>{".tif", ".tiff"} : std::vector<std::string>{},
                {options.model, options.like});
   const Context context = program.context();
+  const WriteOptions how{.driver = options.cog ? "COG" : "", .overwrite = program.overwrite};
+  if (is_tiled_model(options.model) && takes_rows(options.output, how)) {
+    TileReader reader(options.model, bound_of(options));
+    const Terrain frame = frame_of(reader.index());
+    Target target = options.like.empty() ? target_of_model(program, options, frame) : target_like_place(options, frame);
+    if (what != height) target.raster.height_unit.clear();
+    const std::size_t valid = write_tiles(options, reader, target, what, how, context);
+    return say_sampled(program, options, target, what, valid);
+  }
   const Terrain terrain = load_terrain(options.model);
   Target target = options.like.empty() ? target_of_model(program, options, terrain)
                                        : target_like(program, options, terrain, context);
@@ -141,23 +232,12 @@ void sample_raster(const Program& program, const Options& options) {
   std::vector<double> values = quantity_on(target, evaluator, what, context);
   const auto valid =
       static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double v) { return !std::isnan(v); }));
-  if (valid == 0) program.say("warning: the model has no data at any cell of this raster");
   // Single precision: a few parts in 10^8 of a height, and what every tool reads.
   target.raster.heights = std::vector<float>(values.begin(), values.end());
   if (what != height) target.raster.height_unit.clear();
   context.check();
-  write_raster(target.raster, options.output, {.driver = options.cog ? "COG" : "", .overwrite = program.overwrite},
-               context);
-  const nlohmann::ordered_json json = {{"what", kWhat[what]},
-                                       {"columns", target.raster.columns},
-                                       {"rows", target.raster.rows},
-                                       {"cell_width", target.raster.cell_width},
-                                       {"cell_height", target.raster.cell_height},
-                                       {"cells", target.raster.cells()},
-                                       {"valid_cells", valid}};
-  if (program.json) return program.print(json);
-  program.say(fmt::format("{}: {} on {} x {} cells, {} with data", options.output, kWhat[what], target.raster.columns,
-                          target.raster.rows, valid));
+  write_raster(target.raster, options.output, how, context);
+  say_sampled(program, options, target, what, valid);
 }
 
 /// One point a line: x and y with a comma, a semicolon or white space between; more columns are ignored.
@@ -200,8 +280,17 @@ void sample_points(const Program& program, const Options& options) {
   for (const std::string& word : options.what) choose("--what", word, kWhat);
   const std::vector<Vec2> points = wanted_points(options);
   const Context context = program.context();
-  const Terrain terrain = load_terrain(options.model);
-  const TerrainEvaluator evaluator(terrain, context);
+  std::optional<TileReader> tiles;
+  std::optional<Terrain> terrain;
+  std::optional<TerrainEvaluator> evaluator;
+  if (is_tiled_model(options.model)) {
+    note_input(options.model);
+    tiles.emplace(options.model, bound_of(options));
+  } else {
+    terrain = load_terrain(options.model);
+    evaluator.emplace(*terrain, context);
+  }
+  const Georef& georef = tiles ? tiles->index().georef : terrain->georef;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::vector<std::string> header{"x", "y", "z"};
   for (const What w : {slope, aspect})
@@ -212,7 +301,8 @@ void sample_points(const Program& program, const Options& options) {
   Table table(header);
   const auto text = [](double v) { return std::isnan(v) ? std::string() : fmt::format("{}", v); };
   for (const Vec2 p : points) {
-    const std::optional<Jet> jet = evaluator.jet(terrain.georef.to_local(p));
+    const Vec2 local = georef.to_local(p);
+    const std::optional<Jet> jet = tiles ? tiles->jet(local) : evaluator->jet(local);
     const Jet at = jet.value_or(Jet{kNan, {kNan, kNan}, kNan, kNan, kNan});
     nlohmann::ordered_json entry = {{"x", p.x}, {"y", p.y}, {"z", at.value}};
     std::vector<std::string> row{text(p.x), text(p.y), text(at.value)};
@@ -277,6 +367,10 @@ void add_sample(CLI::App& root, Program& program) {
                    "height (default); slope, aspect: degrees; normal; curvature: mean, 1 / unit. Repeat it for points")
       ->type_name("KIND");
   command->add_flag("--cog", options->cog, "The raster as a Cloud-Optimised GeoTIFF (.tif), with overviews");
+  command
+      ->add_option("--tile-memory", options->tile_memory,
+                   "Tiled models: how much of them is kept in memory (default 512)")
+      ->type_name("MB");
   command->add_option("--at", options->at, "Places in CRS coordinates")->type_name("X,Y");
   command
       ->add_option("--points", options->points_file,

@@ -102,7 +102,8 @@ void add_mesh(py::module_& module) {
             run(Running{}, [&](const Context&) { write_mesh(m, name, overwrite); });
           },
           py::arg("path"), py::kw_only(), py::arg("overwrite") = false,
-          "Writes .ply, .obj, .stl or .glb; complete or absent. Raises CannotWrite, UsageError (ending).")
+          "Writes .ply, .obj, .stl, .glb or LandXML (.xml, .landxml); complete or absent. Raises CannotWrite, "
+          "UsageError (ending).")
       .def("__repr__", [](const TriangleMesh& m) {
         return fmt::format("<retalho.Mesh {} vertices, {} triangles>", m.positions.size(), m.triangles.size());
       });

@@ -5,6 +5,7 @@
 #include "contours.h"
 #include "curves.h"
 #include "errors.h"
+#include "formats.h"
 #include "grid.h"
 #include "mesh.h"
 #include "model.h"
@@ -31,4 +32,5 @@ PYBIND11_MODULE(_retalho, module) {
   python::add_tetraquad(module);
   python::add_model(module);
   python::add_tiles(module);
+  python::add_formats(module);
 }

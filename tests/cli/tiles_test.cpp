@@ -33,7 +33,26 @@ TEST(FitTiles, EveryCommandTakesTheFolder) {
        {"info m", "sample m -o s.tif", "sample m --at 1500,2300", "contour m -o c.geojson --interval 20",
         "mesh m -o m.ply", "viewshed m -o v.tif --observer 1505,2305", "render m -o m.png"})
     EXPECT_EQ(run(folder, command).code, 0) << command;
+  // Tile by tile, one at a time: the same answers.
+  const Outcome streamed = run(folder, "compare dem.asc m --json --tile-memory 1");
+  ASSERT_EQ(streamed.code, 0) << streamed.err;
+  EXPECT_NE(streamed.err.find("tiles read one by one"), std::string::npos) << streamed.err;
+  const Outcome joined = run(folder, "compare dem.asc m --json --visibility 300");  // which joins the model
+  ASSERT_EQ(joined.code, 0) << joined.err;
+  for (const char* key : {"surface", "vertices", "triangles", "coefficients", "numbers", "bytes", "cells",
+                          "valid_cells", "uncovered", "violations"})
+    EXPECT_EQ(streamed.json()["models"][0][key], joined.json()["models"][0][key]) << key;
+  for (const char* key : {"rmse", "max_error"})
+    EXPECT_NEAR(streamed.json()["models"][0][key].get<double>(), joined.json()["models"][0][key].get<double>(), 1e-9);
+  for (const char* what : {"height", "slope", "aspect", "curvature"})
+    EXPECT_EQ(run(folder, fmt::format("sample m -o {0}.tif --what {0} --resolution 7 --tile-memory 1", what)).code, 0);
+  EXPECT_EQ(run(folder, "sample m -o s.asc").code, 0) << "a format that takes no rows";
+  EXPECT_EQ(run(folder, "sample m -o l.tif --like s.tif").code, 0);
+  EXPECT_EQ(run(folder, "sample m -o x.tif --tile-memory 0").code, 2);
+  EXPECT_EQ(run(folder, "compare dem.asc m --tile-memory 0").code, 2);
   const Raster sampled = read_raster(folder / "s.tif"), dem = read_raster(folder / "dem.asc");
+  const Raster like = read_raster(folder / "l.tif");
+  for (std::size_t i = 0; i < dem.cells(); ++i) ASSERT_EQ(sampled.at(i), like.at(i));
   for (std::size_t i = 0; i < dem.cells(); ++i) ASSERT_NEAR(sampled.at(i), dem.at(i), 3.001);
 }
 

@@ -391,6 +391,50 @@ def test_three_d_tiles(model: pathlib.Path, tmp_path: pathlib.Path, program: pat
     mesh(program, model, "-o", folder / "tileset.json", code=5)
 
 
+def test_the_module_writes_what_the_program_writes(
+        model: pathlib.Path, tmp_path: pathlib.Path, program: pathlib.Path) -> None:
+    terrain = retalho.load(model)
+    assert isinstance(terrain, retalho.Terrain)
+    notes = terrain.write_quantized_mesh(tmp_path / "a", tolerance=1, level=11)
+    mesh(program, model, "-o", tmp_path / "b" / "layer.json", "--tolerance", "1", "--level", "11")
+    notes_3d = terrain.write_tileset(tmp_path / "c", tolerance=1, triangles=3000)
+    mesh(program, model, "-o", tmp_path / "d" / "tileset.json", "--tolerance", "1", "--tile-triangles", "3000")
+    for one, two in (("a", "b"), ("c", "d")):
+        files = sorted(p.relative_to(tmp_path / one) for p in (tmp_path / one).rglob("*") if p.is_file())
+        assert len(files) > 3
+        for path in files:
+            assert (tmp_path / one / path).read_bytes() == (tmp_path / two / path).read_bytes(), path
+    assert notes["tiles"] == len(list((tmp_path / "a").rglob("*.terrain"))) and notes["levels"] == 12
+    assert notes_3d["tiles"] == len(list((tmp_path / "c").glob("*.glb")))
+    with pytest.raises(OSError, match="overwrite"):
+        terrain.write_tileset(tmp_path / "c")
+    with pytest.raises(ValueError, match="level"):
+        terrain.write_quantized_mesh(tmp_path / "e", level=-2)
+    with pytest.raises(ValueError, match="triangles"):
+        terrain.write_tileset(tmp_path / "e", triangles=0)
+    with pytest.raises(ValueError, match="CRS"):
+        retalho.fit(hills(), max_error=1).write_tileset(tmp_path / "e")
+    assert not (tmp_path / "e").exists()
+
+
+def test_compact_files(tmp_path: pathlib.Path, program: pathlib.Path) -> None:
+    grid = retalho.Grid(hills(), transform=TRANSFORM, crs="EPSG:32611")
+    grid.write(tmp_path / "dem.tif")
+    data = retalho.fit_compact(retalho.read_grid(tmp_path / "dem.tif"), max_error=2.0)
+    subprocess.run([program, "fit", tmp_path / "dem.tif", "-o", tmp_path / "c.retalho", "--max-error", "2", "--format",
+                    "compact", "-q"], check=True, capture_output=True)
+    read, twin = retalho.from_bytes(data), retalho.load(tmp_path / "c.retalho")
+    assert isinstance(read, retalho.Terrain) and isinstance(twin, retalho.Terrain)
+    assert (read.vertices == twin.vertices).all() and (read.vertex_gradients == twin.vertex_gradients).all()
+    assert read.compare(grid).max_error <= 2.0 and len(data) < len(retalho.fit(grid, max_error=2.0).to_bytes())
+    flat = retalho.from_bytes(retalho.fit_compact(grid, vertices=200, surface="linear"))
+    assert isinstance(flat, retalho.Terrain) and len(flat.vertices) <= 200
+    for wrong in ({}, {"max_error": 0.0}, {"vertices": 2}, {"max_error": 1.0, "surface": "powell-sabin"},
+                  {"max_error": 1.0, "fit": "interpolate"}, {"max_error": 1.0, "surface": "linear", "fit": "z-only"}):
+        with pytest.raises(ValueError):
+            retalho.fit_compact(grid, **wrong)  # type: ignore[arg-type]
+
+
 def test_globes_need_a_crs(tmp_path: pathlib.Path, program: pathlib.Path) -> None:
     retalho.fit(hills(), max_error=1).save(tmp_path / "m.retalho")
     for name in ("layer.json", "tileset.json"):

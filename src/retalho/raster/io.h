@@ -1,7 +1,9 @@
 // Elevation grids from files and to files: everything that GDAL opens, and ASCII PGM (P2), which it does not.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,5 +60,15 @@ struct WriteOptions {
 /// driver can, else -9999. Throws CannotWrite.
 void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options = {},
                   const Context& context = {});
+
+/// Can the driver of this name take rows one after another, with NaN for no data?
+bool takes_rows(const std::string& path, const WriteOptions& options = {});
+
+/// The same raster as write_raster of one of floats, of which `rows(first, count, out)` gives some rows at a time,
+/// from north to south, each once; `place`: everything but the heights. Memory: 256 rows. Throws as write_raster, and
+/// UsageError where takes_rows is false.
+void write_rows(const Raster& place, const std::string& path, const WriteOptions& options,
+                const std::function<void(int first, int count, std::span<float> out)>& rows,
+                const Context& context = {});
 
 }  // namespace retalho

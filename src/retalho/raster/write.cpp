@@ -9,6 +9,9 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <limits>
+#include <span>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
@@ -20,6 +23,8 @@ namespace retalho {
 namespace {
 
 namespace fs = std::filesystem;
+using Rows = std::function<void(int, int, std::span<float>)>;
+constexpr int kRowsAtOnce = 256;
 
 bool can(GDALDriver& driver, const char* what) {
   return CPLTestBool(CSLFetchNameValueDef(driver.GetMetadata(), what, "NO"));
@@ -56,11 +61,16 @@ bool is_double(const Raster& raster) {
   return std::holds_alternative<std::vector<double>>(raster.heights);
 }
 
-/// NaN where the driver and other tools understand it, else a value that no height has.
-double choose_nodata(const Raster& raster, const GDALDriver& driver) {
+bool takes_nan(const GDALDriver& driver) {
   const std::string name = driver.GetDescription();
   for (const char* able : {"GTiff", "COG", "netCDF", "ENVI", "GPKG", "KEA", "HDF5"})
-    if (name == able) return std::numeric_limits<double>::quiet_NaN();
+    if (name == able) return true;
+  return false;
+}
+
+/// NaN where the driver and other tools understand it, else a value that no height has.
+double choose_nodata(const Raster& raster, const GDALDriver& driver) {
+  if (takes_nan(driver)) return std::numeric_limits<double>::quiet_NaN();
   return std::visit(
       [](const auto& heights) {
         for (const double candidate : {-9999.0, -32768.0, -99999.0})
@@ -94,6 +104,24 @@ void set_facts(GDALDataset& dataset, const Raster& raster, double nodata) {
   if (!raster.height_unit.empty()) band.SetUnitType(raster.height_unit.c_str());
 }
 
+/// Rows that are made as they are written.
+void put_made_rows(GDALDataset& dataset, const Raster& place, const Rows& make_rows, const GdalMessages& messages,
+                   const Context& context) {
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  std::vector<float> buffer;
+  for (int row = 0; row < place.rows; row += kRowsAtOnce) {
+    context.check();
+    const int rows = std::min(kRowsAtOnce, place.rows - row);
+    buffer.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(place.columns));
+    make_rows(row, rows, buffer);
+    const CPLErr outcome = band.RasterIO(GF_Write, 0, row, place.columns, rows, buffer.data(), place.columns, rows,
+                                         GDT_Float32, 0, 0, nullptr);
+    if (outcome != CE_None || messages.failed()) return;
+    band.FlushCache(false);
+    context.report("write", static_cast<double>(row + rows) / place.rows);
+  }
+}
+
 void put_rows(GDALDataset& dataset, const Raster& raster, double nodata, const GdalMessages& messages,
               const Context& context) {
   GDALRasterBand& band = *dataset.GetRasterBand(1);
@@ -122,9 +150,9 @@ void put_rows(GDALDataset& dataset, const Raster& raster, double nodata, const G
       raster.heights);
 }
 
-/// Makes `file` with `driver`; what went wrong is in `messages`.
-void make(GDALDriver& driver, const std::string& file, const Raster& raster, const WriteOptions& options,
-          const GdalMessages& messages, const Context& context) {
+/// Makes `file`, which is `on_disk` without an account, with `driver`; what went wrong is in `messages`.
+void make(GDALDriver& driver, const std::string& file, const std::string& on_disk, const Raster& raster,
+          const WriteOptions& options, const Rows* made, const GdalMessages& messages, const Context& context) {
   const GDALDataType type = is_double(raster) ? GDT_Float64 : GDT_Float32;
   const CPLStringList list = creation_options(driver, raster, options);
   const double nodata = choose_nodata(raster, driver);
@@ -133,8 +161,40 @@ void make(GDALDriver& driver, const std::string& file, const Raster& raster, con
     const DatasetPtr dataset(driver.Create(file.c_str(), raster.columns, raster.rows, 1, type, creation));
     if (!dataset) return;
     set_facts(*dataset, raster, nodata);
-    put_rows(*dataset, raster, nodata, messages, context);
+    if (made != nullptr)
+      put_made_rows(*dataset, raster, *made, messages, context);
+    else
+      put_rows(*dataset, raster, nodata, messages, context);
     return;  // closing may fail too: GDAL says so through the messages
+  }
+  if (made != nullptr) {  // a GeoTIFF on the disk in between, instead of memory
+    GDALDriver& tiff = *GetGDALDriverManager()->GetDriverByName("GTiff");
+    const std::string between = file + ".rows.tif";
+    const auto remove = [&] {
+      std::error_code ec;
+      fs::remove(on_disk + ".rows.tif", ec);
+    };
+    {
+      const char* const plain[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", nullptr};
+      const DatasetPtr dataset(
+          tiff.Create(between.c_str(), raster.columns, raster.rows, 1, type, const_cast<char**>(plain)));
+      if (!dataset) return;
+      try {
+        set_facts(*dataset, raster, nodata);
+        put_made_rows(*dataset, raster, *made, messages, context);
+      } catch (...) {
+        remove();
+        throw;
+      }
+    }
+    if (!messages.failed()) {
+      const DatasetPtr source(static_cast<GDALDataset*>(GDALOpen(between.c_str(), GA_ReadOnly)));
+      if (source) {
+        const DatasetPtr copy(driver.CreateCopy(file.c_str(), source.get(), TRUE, creation, nullptr, nullptr));
+      }
+    }
+    remove();
+    return;
   }
   GDALDriver& memory = *GetGDALDriverManager()->GetDriverByName("MEM");
   const DatasetPtr source(memory.Create("", raster.columns, raster.rows, 1, type, nullptr));
@@ -163,7 +223,10 @@ void check_voids(const Raster& raster, const std::string& file, const std::strin
 
 }  // namespace
 
-void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options, const Context& context) {
+namespace {
+
+void write(const Raster& raster, const std::string& path, const WriteOptions& options, const Rows* made,
+           const Context& context) {
   register_gdal();
   if (raster.columns < 1 || raster.rows < 1)
     throw CannotWrite(fmt::format("'{}': a raster without cells cannot be written", path), path);
@@ -188,16 +251,35 @@ void write_raster(const Raster& raster, const std::string& path, const WriteOpti
                       path);
   const CheckedFiles checked;
   const bool counted = CheckedFiles::serves(driver.GetDescription());
-  make(driver, counted ? checked.name(file.temporary()) : file.temporary(), raster, options, messages, context);
+  make(driver, counted ? checked.name(file.temporary()) : file.temporary(), file.temporary(), raster, options, made,
+       messages, context);
   if (checked.error() != 0)
     throw CannotWrite(fmt::format("cannot write '{}': {}", path, std::strerror(checked.error())), path);
   if (messages.failed() || !fs::exists(file.temporary(), ec))
     throw CannotWrite(fmt::format("cannot write '{}' as {}: {}", path, driver.GetDescription(),
                                   messages.words("no reason was given")),
                       path);
-  check_voids(raster, file.temporary(), path);
+  if (made == nullptr) check_voids(raster, file.temporary(), path);
   for (const std::string& old : leftovers) file.supersede(old);
   file.commit();
+}
+
+}  // namespace
+
+void write_raster(const Raster& raster, const std::string& path, const WriteOptions& options, const Context& context) {
+  write(raster, path, options, nullptr, context);
+}
+
+bool takes_rows(const std::string& path, const WriteOptions& options) {
+  register_gdal();
+  return takes_nan(choose_driver(path, options.driver));
+}
+
+void write_rows(const Raster& place, const std::string& path, const WriteOptions& options,
+                const std::function<void(int first, int count, std::span<float> out)>& rows, const Context& context) {
+  if (!takes_rows(path, options))
+    throw UsageError(fmt::format("'{}': this format cannot be written row by row: use .tif", path), path);
+  write(place, path, options, &rows, context);
 }
 
 }  // namespace retalho

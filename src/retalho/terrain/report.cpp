@@ -163,8 +163,9 @@ std::int64_t edge_function(const Lattice& a, const Lattice& b, const Lattice& p)
 
 class Assessment {
  public:
-  Assessment(const Terrain& terrain, const Raster& raster, double tolerance)
-      : terrain_(terrain),
+  Assessment(const Terrain& terrain, const Raster& raster, double tolerance, const AssessedPart* part = nullptr)
+      : part_(part),
+        terrain_(terrain),
         raster_(raster),
         cells_(raster, terrain.georef),
         edges_(build_edges(terrain.tin)),
@@ -175,7 +176,7 @@ class Assessment {
     allowance_ = summary_.valid ? kRoundingAllowance * (summary_.maximum - summary_.minimum) : 0;
   }
 
-  ErrorReport run(const Context& context) const {
+  Tally tally(const Context& context) const {
     const std::size_t bands = bands_.begin.size() - 1;
     std::vector<Tally> tallies(bands);
     parallel_chunks(bands, 1, context, [&](std::size_t begin, std::size_t end) {
@@ -183,6 +184,11 @@ class Assessment {
     });
     Tally all;
     for (const Tally& t : tallies) all.add(t);
+    return all;
+  }
+
+  ErrorReport run(const Context& context) const {
+    const Tally all = tally(context);
     if (all.covered == 0) throw BadInput("no valid cell of the grid lies on the model: do they cover the same ground?");
     ErrorReport report;
     report.cells = raster_.cells();
@@ -247,7 +253,7 @@ class Assessment {
   void cell(std::uint32_t t, const Pieces& pieces, const TriangleFrame& whole, int c, int r, std::vector<bool>& seen,
             std::size_t band_row, Tally& tally) const {
     const std::size_t bit = band_row * static_cast<std::size_t>(raster_.columns) + static_cast<std::size_t>(c);
-    if (seen[bit]) return;
+    if (seen[bit] || (part_ != nullptr && !part_->only.get(c, r))) return;
     const double height = raster_.at(c, r);
     if (std::isnan(height)) return;
     const Vec2 p{cells_.x[static_cast<std::size_t>(c)], cells_.y[static_cast<std::size_t>(r)]};
@@ -279,14 +285,20 @@ class Assessment {
   }
 
   void add_slope(Vec2 gradient, int c, int r, Tally& tally) const {
-    if (c == 0 || r == 0 || c == raster_.columns - 1 || r == raster_.rows - 1) return;
-    const double dx = (raster_.at(c + 1, r) - raster_.at(c - 1, r)) / (2 * cells_.step_x);
-    const double dy = (raster_.at(c, r - 1) - raster_.at(c, r + 1)) / (2 * cells_.step_y);
+    const Raster& around = part_ != nullptr ? *part_->around : raster_;
+    if (part_ != nullptr) {
+      c += part_->cells.column - part_->around_cells.column;
+      r += part_->cells.row - part_->around_cells.row;
+    }
+    if (c == 0 || r == 0 || c == around.columns - 1 || r == around.rows - 1) return;
+    const double dx = (around.at(c + 1, r) - around.at(c - 1, r)) / (2 * cells_.step_x);
+    const double dy = (around.at(c, r - 1) - around.at(c, r + 1)) / (2 * cells_.step_y);
     if (std::isnan(dx) || std::isnan(dy)) return;
     ++tally.slopes;
     tally.slope_squares += norm2(gradient - Vec2{dx, dy});
   }
 
+  const AssessedPart* part_;
   const Terrain& terrain_;
   const Raster& raster_;
   Cells cells_;
@@ -302,6 +314,44 @@ class Assessment {
 ErrorReport assess(const Terrain& terrain, const Raster& raster, double tolerance, const Context& context) {
   if (raster.columns <= 0 || raster.rows <= 0) throw BadInput("the grid has no cells");
   return Assessment(terrain, raster, tolerance).run(context);
+}
+
+void assess_part(const AssessedPart& part, double tolerance, ErrorSums& sums, const Context& context) {
+  const Raster& raster = *part.raster;
+  for (int r = 0; r < raster.rows; ++r)
+    for (int c = 0; c < raster.columns; ++c)
+      if (part.only.get(c, r)) {
+        ++sums.cells;
+        sums.valid += raster.valid(c, r) ? 1 : 0;
+      }
+  if (part.terrain == nullptr) return;
+  const Tally tally = Assessment(*part.terrain, raster, tolerance, &part).tally(context);
+  if (tally.covered == 0) return;
+  sums.covered += tally.covered;
+  sums.violations += tally.violations;
+  sums.slopes += tally.slopes;
+  sums.squares += tally.squares;
+  sums.slope_squares += tally.slope_squares;
+  const auto columns = static_cast<std::size_t>(raster.columns);
+  const std::size_t row = static_cast<std::size_t>(part.cells.row) + tally.largest_cell / columns;
+  const std::size_t column = static_cast<std::size_t>(part.cells.column) + tally.largest_cell % columns;
+  const std::size_t cell = row * static_cast<std::size_t>(sums.columns) + column;
+  if (tally.largest < sums.largest || (tally.largest == sums.largest && cell > sums.largest_cell)) return;
+  sums.largest = tally.largest;
+  sums.largest_cell = cell;
+}
+
+ErrorReport report_of(const ErrorSums& sums) {
+  if (sums.covered == 0) throw BadInput("no valid cell of the grid lies on the model: do they cover the same ground?");
+  ErrorReport report;
+  report.cells = sums.cells;
+  report.valid_cells = sums.valid;
+  report.uncovered = sums.valid - sums.covered;
+  report.violations = sums.violations;
+  report.rmse = std::sqrt(sums.squares / static_cast<double>(sums.covered));
+  report.max_error = sums.largest;
+  report.slope_rmse = sums.slopes ? std::sqrt(sums.slope_squares / static_cast<double>(sums.slopes)) : 0;
+  return report;
 }
 
 }  // namespace retalho

@@ -5,7 +5,9 @@
 #include <cstddef>
 
 #include "retalho/core/context.h"
+#include "retalho/raster/mask.h"
 #include "retalho/raster/raster.h"
+#include "retalho/raster/window.h"
 #include "retalho/terrain/terrain.h"
 
 namespace retalho {
@@ -31,5 +33,25 @@ inline constexpr double kRoundingAllowance = 16 * 2.220446049250313e-16;
 /// Cost: about 0.05-0.1 us a cell on one thread; memory: a bit a cell of the rows in work, and 4 bytes a triangle and
 /// band of rows. Throws BadInput when no valid cell is covered.
 ErrorReport assess(const Terrain& terrain, const Raster& raster, double tolerance = 0, const Context& context = {});
+
+/// One part of a grid that is assessed part by part.
+struct AssessedPart {
+  const Terrain* terrain = nullptr;  ///< null: the model has no data here
+  const Raster* raster = nullptr;    ///< lies as the terrain's own grid does
+  CellWindow cells;                  ///< of `raster`, in the whole grid
+  Mask only;                         ///< the cells of `raster` that count here; those of all parts make up the grid
+  const Raster* around = nullptr;    ///< `raster` with the cells beyond its border that slopes need
+  CellWindow around_cells;
+};
+/// What parts add up to. The first largest error, in raster order of the whole, is kept.
+struct ErrorSums {
+  int columns = 0;  ///< of the whole grid: set it before the first part
+  std::size_t cells = 0, valid = 0, covered = 0, violations = 0, slopes = 0, largest_cell = 0;
+  double squares = 0, slope_squares = 0, largest = -1;
+};
+/// assess() of the cells that count; what rounding is allowed (kRoundingAllowance) goes by the part's own range.
+void assess_part(const AssessedPart& part, double tolerance, ErrorSums& sums, const Context& context = {});
+/// Throws BadInput when no valid cell was covered. `largest`'s place is the caller's: max_error_at is left at zero.
+ErrorReport report_of(const ErrorSums& sums);
 
 }  // namespace retalho

@@ -1,0 +1,119 @@
+#include "formats.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "arrays.h"
+#include "grid.h"
+#include "model.h"
+#include "retalho/core/error.h"
+#include "retalho/mesh/globe_mesh.h"
+#include "retalho/model/compact.h"
+#include "running.h"
+#include "terrain.h"
+
+namespace py = pybind11;
+
+namespace retalho::python {
+namespace {
+
+CompactOptions compact_options(const std::optional<double>& max_error, const std::optional<long long>& vertices,
+                               const std::string& surface, const std::string& fit) {
+  CompactOptions options;
+  if (!max_error && !vertices) throw UsageError("give max_error, vertices or both", {}, "max_error");
+  if (max_error && !(std::isfinite(*max_error) && *max_error > 0))
+    throw UsageError(fmt::format("max_error must be over 0, not {}", *max_error), {}, "max_error");
+  if (vertices && *vertices < 3)
+    throw UsageError(fmt::format("vertices must be 3 or more, not {}", *vertices), {}, "vertices");
+  const std::optional<SurfaceKind> kind = parse_surface(surface);
+  if (!kind || *kind == SurfaceKind::powell_sabin)
+    throw UsageError("surface must be 'linear' or 'clough-tocher', not '" + surface + "'", {}, "surface");
+  if (fit != "least-squares" && fit != "z-only")
+    throw UsageError("fit must be 'least-squares' or 'z-only', not '" + fit + "'", {}, "fit");
+  if (fit == "z-only" && *kind == SurfaceKind::linear)
+    throw UsageError("fit='z-only' is for surface='clough-tocher'", {}, "fit");
+  options.surface = *kind;
+  options.heights_only = fit == "z-only";
+  options.max_error = max_error.value_or(0);
+  options.vertices = static_cast<std::size_t>(vertices.value_or(0));
+  return options;
+}
+
+py::dict notes_of(const GlobeNotes& notes) {
+  py::dict d;
+  d["tiles"] = notes.tiles;
+  d["levels"] = notes.levels;
+  d["triangles"] = notes.triangles;
+  d["bytes"] = notes.bytes;
+  d["step"] = notes.step;
+  return d;
+}
+
+}  // namespace
+
+void add_formats(py::module_& module) {
+  module.def(
+      "fit_compact",
+      [](const py::object& z, const py::object& transform, const py::object& crs, const py::object& nodata,
+         std::optional<double> max_error, std::optional<long long> vertices, const std::string& surface,
+         const std::string& fit, int threads, const py::object& progress) {
+        const CompactOptions options = compact_options(max_error, vertices, surface, fit);
+        const Running running{threads, progress};
+        const auto raster = raster_of(z, {transform, crs, nodata}, running);
+        const CompactModel model =
+            run(running, [&](const Context& context) { return fit_compact(*raster, options, context); });
+        return py::bytes(model.bytes);
+      },
+      py::arg("z"), py::kw_only(), py::arg("transform") = py::none(), py::arg("crs") = py::none(),
+      py::arg("nodata") = py::none(), py::arg("max_error") = py::none(), py::arg("vertices") = py::none(),
+      py::arg("surface") = "clough-tocher", py::arg("fit") = "least-squares", py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "An elevation grid to the bytes of a compact model file (from_bytes reads them): refined by the surface itself "
+      "and "
+      "rounded, with every valid cell within max_error of what is read back; vertices: a budget. surface: linear or "
+      "clough-tocher. fit: least-squares or z-only.");
+  auto terrain =
+      py::reinterpret_borrow<py::class_<TerrainModel, std::shared_ptr<TerrainModel>>>(module.attr("Terrain"));
+  terrain.def(
+      "write_quantized_mesh",
+      [](const TerrainModel& model, const py::object& folder, double tolerance, int level, double outside, bool normals,
+         bool gzip, bool overwrite, int threads, const py::object& progress) {
+        const std::string path = path_text(folder);
+        if (level < -1) throw UsageError(fmt::format("level must be 0 or more, not {}", level), {}, "level");
+        return notes_of(run(Running{threads, progress}, [&](const Context& context) {
+          return write_quantized_mesh(TerrainEvaluator(model.terrain(), context), path,
+                                      {tolerance, level, outside, normals, gzip}, overwrite, context);
+        }));
+      },
+      py::arg("folder"), py::kw_only(), py::arg("tolerance") = 0.0, py::arg("level") = -1, py::arg("outside") = 0.0,
+      py::arg("normals") = true, py::arg("gzip") = true, py::arg("overwrite") = false, py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "Tiles for viewers of the globe, quantized-mesh 1.0: {level}/{x}/{y}.terrain and layer.json (docs/formats.md). "
+      "level: "
+      "the finest; -1: as fine as the model's cells. outside: the height where there is no data. What was written, as "
+      "a "
+      "dictionary: tiles, levels, triangles, bytes, step (of the heights). Raises BadInput without a CRS.");
+  terrain.def(
+      "write_tileset",
+      [](const TerrainModel& model, const py::object& folder, double tolerance, long long triangles, bool overwrite,
+         int threads, const py::object& progress) {
+        const std::string path = path_text(folder);
+        if (triangles < 1)
+          throw UsageError(fmt::format("triangles must be 1 or more, not {}", triangles), {}, "triangles");
+        return notes_of(run(Running{threads, progress}, [&](const Context& context) {
+          return write_tileset(model.terrain(), path, {tolerance, static_cast<std::size_t>(triangles)}, overwrite,
+                               context);
+        }));
+      },
+      py::arg("folder"), py::kw_only(), py::arg("tolerance") = 0.0, py::arg("triangles") = 65536,
+      py::arg("overwrite") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
+      "The surface as 3D Tiles 1.1: tileset.json and a .glb a tile of about so many triangles (docs/formats.md). What "
+      "was "
+      "written, as a dictionary (step: the tolerance). Raises BadInput without a CRS.");
+}
+
+}  // namespace retalho::python
