@@ -47,7 +47,7 @@ double bracketed_root(const std::array<double, 4>& b, double low, double high, d
       if (f == 0) return s;
       next = 0.5 * (low + high);
     }
-    if (std::abs(next - s) < 1e-10) return next;  // the step after it would be the square of this
+    if (std::abs(next - s) < 1e-6) return next;  // the step after it would be about the square of this
     s = next;
   }
   return s;
