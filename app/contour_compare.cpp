@@ -102,7 +102,7 @@ std::vector<std::string> compare_grid_surfaces(const Program& program, const Ras
   return draw(program, all, extent_of(raster), comparison);
 }
 
-std::vector<std::string> compare_point_surfaces(const Program& program, const Tin& tin, const Georef& georef,
+std::vector<std::string> compare_point_surfaces(const Program& program, const ConstrainedTin& tin, const Georef& georef,
                                                 const SurfaceComparison& comparison, const Context& context) {
   const ContourOptions options{comparison.tolerance, true};
   std::vector<Named> all;
@@ -111,7 +111,9 @@ std::vector<std::string> compare_point_surfaces(const Program& program, const Ti
     SurfaceFlags flags;
     flags.surface = kind;
     flags.gradients = gradients;
-    const Terrain terrain = make_terrain(tin, georef, resolve(flags, true), context);
+    SurfaceOptions how = resolve(flags, true);
+    how.creases = tin.edges;
+    const Terrain terrain = make_terrain(tin.tin, georef, how, context);
     shown = extent_of(terrain);
     all.push_back({gradients.empty() ? kind : fmt::format("{}, {}", kind, gradients),
                    trace_contours(terrain, comparison.levels, options, context)});

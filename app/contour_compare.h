@@ -7,7 +7,7 @@
 #include "program.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/terrain.h"
-#include "retalho/tin/tin.h"
+#include "retalho/tin/breaklines.h"
 
 namespace retalho::app {
 
@@ -28,7 +28,7 @@ Raster middle_of(const Raster& raster, int zoom);
 std::vector<std::string> compare_grid_surfaces(const Program& program, const Raster& raster,
                                                const SurfaceComparison& comparison, const Context& context);
 /// The same for survey points: linear, Powell-Sabin, and Clough-Tocher with each kind of gradients.
-std::vector<std::string> compare_point_surfaces(const Program& program, const Tin& tin, const Georef& georef,
+std::vector<std::string> compare_point_surfaces(const Program& program, const ConstrainedTin& tin, const Georef& georef,
                                                 const SurfaceComparison& comparison, const Context& context);
 
 }  // namespace retalho::app

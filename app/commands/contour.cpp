@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "breaklines.h"
 #include "contour_compare.h"
 #include "contour_map.h"
 #include "fitting.h"
@@ -15,7 +16,6 @@
 #include "retalho/model/model.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/tin/refine.h"
-#include "retalho/tin/scattered.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -36,6 +36,7 @@ struct Options {
   int zoom = 48;
   GridFlags grid;
   PointOptions points;
+  BreaklineFlags breaklines;
   BudgetFlags budget;
 };
 
@@ -82,8 +83,10 @@ Surface load_surface(const Program& program, const Options& options, const Conte
     const PointCloud cloud = load_points(program, options.input, options.points, context);
     SurfaceFlags flags;
     flags.surface = kind;
-    surface.terrain = make_terrain(triangulate_points(cloud.positions, nullptr, context), cloud.georef,
-                                   resolve(flags, true), context);
+    ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
+    SurfaceOptions how = resolve(flags, true);
+    how.creases = std::move(made.edges);
+    surface.terrain = make_terrain(std::move(made.tin), cloud.georef, how, context);
     measure(surface);
     return surface;
   }
@@ -157,10 +160,10 @@ std::vector<std::string> compare(const Program& program, const Options& options,
                      "--compare-surfaces");
   if (takes_points(options.input, options.points)) {
     const PointCloud cloud = load_points(program, options.input, options.points, context);
-    const Tin tin = triangulate_points(cloud.positions, nullptr, context);
-    const auto [low, high] = std::minmax_element(tin.heights.begin(), tin.heights.end());
-    prepare(*low, *high, mean_edge(tin));
-    return compare_point_surfaces(program, tin, cloud.georef, comparison, context);
+    const ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
+    const auto [low, high] = std::minmax_element(made.tin.heights.begin(), made.tin.heights.end());
+    prepare(*low, *high, mean_edge(made.tin));
+    return compare_point_surfaces(program, made, cloud.georef, comparison, context);
   }
   RasterSummary summary;
   const Raster raster = load_grid(program, options.input, options.grid, summary, context);
@@ -190,6 +193,8 @@ void run(const Program& program, const Options& options) {
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
   if (options.output.empty() && options.compare.empty())
     throw UsageError("name an output: -o FILE for lines, --compare-surfaces FILE for a picture", {}, "--output");
+  check_breakline_flags(options.breaklines,
+                        !is_model_file(options.input) && takes_points(options.input, options.points));
   if (!options.output.empty()) {
     check_output(program, options.output, kEndings, {options.input});
     check_sheet_flags(options.sheet, options.output);
@@ -296,6 +301,7 @@ void add_contour(CLI::App& root, Program& program) {
                   "retalho contour dem.tif -o lines.shp --levels 350,400,500 --tolerance 2\n"
                   "retalho contour dem.tif --interval 20 --compare-surfaces choose.png\n"
                   "retalho contour model.retalho -o lines.geojson --interval 10\n"
+                  "retalho contour survey.csv -o lines.gpkg --interval 0.5 --breaklines kerbs.gpkg\n"
                   "retalho contour dem.tif -o map.pdf --interval 20 --bands --curves --title 'Jacksboro' --sheet A3\n"
                   "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
   command->add_option("INPUT", options->input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
@@ -336,6 +342,7 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("NAME");
   command->add_option("--layer", options->points.layer, "Vector files with several layers: which one")
       ->type_name("NAME");
+  add_breakline_flags(*command, options->breaklines);
   command
       ->add_option("--compare-surfaces", options->compare,
                    "A picture (.png .svg .pdf) of the lines of every surface, side by side, each through all samples")

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "breaklines.h"
 #include "fit_tiles.h"
 #include "fitting.h"
 #include "inputs.h"
@@ -23,6 +24,7 @@ struct Options {
   std::string input, output;
   GridFlags grid;
   PointOptions points;
+  BreaklineFlags breaklines;
   BudgetFlags budget;
   SurfaceFlags surface;
   TileFlags tiles;
@@ -92,7 +94,11 @@ Fit fit_points(const Program& program, const Options& options, const SurfaceOpti
   ScatteredNotes notes;
   Tin tin;
   double tolerance = 0;
+  std::vector<std::uint32_t> creases;
   if (options.budget.given()) {
+    if (options.breaklines.given())
+      throw UsageError("--breaklines keeps every point: leave --max-error, --vertices and --ratio out", {},
+                       "--breaklines");
     const PointSummary summary = summarize(cloud);
     const Budget budget =
         resolve(program, options.budget, cloud.positions.size(), summary.maximum.z - summary.minimum.z);
@@ -100,13 +106,17 @@ Fit fit_points(const Program& program, const Options& options, const SurfaceOpti
     tin = refine_points(cloud.positions, {budget.max_error, budget.vertices}, &notes, context);
   } else {
     program.say("every point becomes a vertex (--max-error, --vertices or --ratio keep fewer)");
-    tin = triangulate_points(cloud.positions, &notes, context);
+    ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, &notes, context);
+    tin = std::move(made.tin);
+    creases = std::move(made.edges);
   }
   fit.seconds_triangulation = watch.seconds();
   if (notes.repeated > 0)
     program.say(fmt::format("{} points repeat another's x, y: the mean height is taken (largest difference {:.6g})",
                             notes.repeated, notes.largest_spread));
-  fit.terrain = make_terrain(std::move(tin), cloud.georef, surface, context);
+  SurfaceOptions how = surface;
+  how.creases = std::move(creases);
+  fit.terrain = make_terrain(std::move(tin), cloud.georef, how, context);
   fit.terrain.tolerance = tolerance;
   fit.errors = assess_points(fit.terrain, cloud.positions, tolerance, context);
   fit.has_slope = false;
@@ -144,6 +154,7 @@ void run(const Program& program, const Options& options) {
   }
   if (options.tiles.jobs != 0) throw UsageError("--jobs goes with --tiles", {}, "--jobs");
   const bool from_points = takes_points(options.input, options.points), compact = compact_format(options.surface);
+  check_breakline_flags(options.breaklines, from_points);
   if (compact) compact_options(options.surface, from_points);
   const SurfaceOptions surface = compact ? SurfaceOptions{} : resolve(options.surface, from_points);
   const bool by_surface = compact || refines_surface(options.surface, from_points);
@@ -184,6 +195,7 @@ void add_fit(CLI::App& root, Program& program) {
                   "retalho fit dem.tif -o smooth.retalho --refine surface --ratio 1%\n"
                   "retalho fit country.vrt -o country --tiles 2048 --max-error 1\n"
                   "retalho fit dem.tif -o small.retalho --max-error 2 --format compact\n"
+                  "retalho fit survey.csv -o site.retalho --breaklines kerbs.gpkg\n"
                   "retalho fit soundings.xyz -o seabed.retalho --surface powell-sabin\n"
                   "retalho fit survey.gpkg --height-field elevation -o site.retalho --max-error 0.1");
   command->add_option("DEM", options->input, "Elevation grid, or points (.xyz .csv .ply, vector layers)")
@@ -200,6 +212,7 @@ void add_fit(CLI::App& root, Program& program) {
       ->add_option("--height-field", options->points.height_field, "Vector layers: the attribute that holds the height")
       ->type_name("NAME");
   command->add_option("--layer", options->points.layer, "Vector files: which layer")->type_name("NAME");
+  add_breakline_flags(*command, options->breaklines);
   command->add_option("--crs", options->points.crs, "Points in formats without a CRS: theirs")->type_name("CRS");
   command->callback([options, &program] { run(program, *options); });
 }

@@ -81,6 +81,68 @@ TEST(Contour, ModelsAndPointsToo) {
   EXPECT_GT(outcome.json()["lines"].get<int>(), 0);
 }
 
+TEST(Contour, BreaklinesOfSurveys) {
+  const ScratchFolder folder;
+  std::string csv = "x,y,z\n";
+  // A ridge along x = 50.5: height falls by 1 to the west and by 0.2 to the east.
+  const auto height = [](double x) { return x < 50.5 ? 60 - (50.5 - x) : 60 - 0.2 * (x - 50.5); };
+  for (int i = 0; i < 400; ++i) csv += fmt::format("{},{},{}\n", (i * 37) % 101, (i * 53) % 97, height((i * 37) % 101));
+  folder.put("survey.csv", csv);
+  folder.put("ridge.geojson",
+             R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":)"
+             R"("LineString","coordinates":[[50.5,2,60],[50.5,40,60],[50.5,90,60]]}}]})");
+  const Outcome lines = run(folder, "contour survey.csv -o l.gpkg --interval 5 --breaklines ridge.geojson --json");
+  ASSERT_EQ(lines.code, 0) << lines.err;
+  EXPECT_NE(lines.err.find("1 breaklines with 3 vertices"), std::string::npos) << lines.err;
+  const Outcome model = run(folder, "fit survey.csv -o m.retalho --breaklines ridge.geojson --json");
+  ASSERT_EQ(model.code, 0) << model.err;
+  const Outcome smooth = run(folder, "fit survey.csv -o s.retalho --json");
+  ASSERT_EQ(smooth.code, 0) << smooth.err;
+  // The model keeps both planes to the ridge; the smooth one cannot.
+  const auto error_at = [&](const char* file, double x, double y) {
+    const Outcome at = run(folder, fmt::format("sample {} --at {},{} --json", file, x, y));
+    EXPECT_EQ(at.code, 0) << at.err;
+    return std::abs(at.json()["points"][0]["z"].get<double>() - height(x));
+  };
+  double worst = 0, worst_smooth = 0;
+  for (double y = 20; y < 75; y += 5)
+    for (const double x : {49.9, 51.1}) {
+      worst = std::max(worst, error_at("m.retalho", x, y));
+      worst_smooth = std::max(worst_smooth, error_at("s.retalho", x, y));
+    }
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GT(worst_smooth, 0.05);
+  EXPECT_EQ(run(folder, "mesh m.retalho -o m.ply").code, 0);
+  EXPECT_EQ(run(folder, "contour m.retalho -o b.gpkg --interval 5 --bands").code, 0);
+}
+
+TEST(Contour, BreaklinesRefusedInWords) {
+  const Hills folder;
+  folder.put("p.csv", "x,y,z\n0,0,1\n10,0,2\n0,10,3\n10,10,4\n");
+  folder.put("points.geojson", R"({"type":"Point","coordinates":[1,2,3]})");
+  folder.put("far.geojson", R"({"type":"LineString","coordinates":[[1,2],[300,4]]})");
+  const std::size_t before = folder.entries();
+  const auto words = [&](const std::string& arguments, int code) {
+    const Outcome outcome = run(folder, arguments);
+    EXPECT_EQ(outcome.code, code) << arguments << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(words("contour dem.asc -o x.gpkg --interval 5 --breaklines far.geojson", 2).find("goes with points"),
+            std::string::npos);
+  EXPECT_NE(words("contour p.csv -o x.gpkg --interval 1 --breaklines points.geojson", 3).find("holds no line"),
+            std::string::npos);
+  EXPECT_NE(words("contour p.csv -o x.gpkg --interval 1 --breaklines far.geojson", 3).find("give the lines heights"),
+            std::string::npos);
+  EXPECT_NE(words("contour p.csv -o x.gpkg --interval 1 --breaklines none.geojson", 4).find("does not exist"),
+            std::string::npos);
+  EXPECT_NE(words("contour p.csv -o x.gpkg --interval 1 --breakline-layer a", 2).find("goes with --breaklines"),
+            std::string::npos);
+  EXPECT_NE(
+      words("fit p.csv -o x.retalho --max-error 1 --breaklines far.geojson", 2).find("--breaklines keeps every point"),
+      std::string::npos);
+  EXPECT_EQ(folder.entries(), before);
+}
+
 TEST(Contour, NoLevelInReachGivesALayerWithoutFeatures) {
   const Hills folder;
   const Outcome outcome = run(folder, "contour dem.asc -o none.gpkg --levels 5000");

@@ -1,39 +1,16 @@
 // Points of vector layers through GDAL.
-#include <cpl_conv.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
-#include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "retalho/cloud/formats.h"
+#include "retalho/cloud/vector_layer.h"
 #include "retalho/core/error.h"
-#include "retalho/raster/gdal.h"
 
 namespace retalho {
 namespace {
-
-std::string layer_names(GDALDataset& dataset) {
-  std::string list;
-  for (int k = 0; k < dataset.GetLayerCount(); ++k)
-    list += fmt::format("{}'{}'", k ? ", " : "", dataset.GetLayer(k)->GetName());
-  return list;
-}
-
-OGRLayer& choose_layer(GDALDataset& dataset, const std::string& wanted, const std::string& path) {
-  if (!wanted.empty()) {
-    if (OGRLayer* layer = dataset.GetLayerByName(wanted.c_str())) return *layer;
-    throw BadInput(fmt::format("'{}' has no layer '{}': it has {}", path, wanted, layer_names(dataset)), path, wanted);
-  }
-  if (dataset.GetLayerCount() == 0) throw BadInput(fmt::format("'{}' holds no layer", path), path);
-  if (dataset.GetLayerCount() > 1)
-    throw BadInput(fmt::format("'{}' holds {} layers: say which one (--layer): {}", path, dataset.GetLayerCount(),
-                               layer_names(dataset)),
-                   path);
-  return *dataset.GetLayer(0);
-}
 
 std::string numeric_fields(OGRFeatureDefn& definition) {
   std::string list;
@@ -111,34 +88,13 @@ class Collector {
   std::size_t flat_ = 0, others_ = 0;
 };
 
-std::string layer_wkt(OGRLayer& layer) {
-  const OGRSpatialReference* crs = layer.GetSpatialRef();
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
-  if (!crs || crs->exportToWkt(&text, options) != OGRERR_NONE) {
-    CPLFree(text);
-    return {};
-  }
-  std::string wkt(text);
-  CPLFree(text);
-  return wkt;
-}
-
 }  // namespace
 
 void read_vector_points(const std::string& path, const PointOptions& options, PointCloud& cloud, PointNotes& notes,
                         std::string& crs_wkt, const Context& context) {
-  register_gdal();
   const GdalMessages messages;
-  std::error_code ec;
-  if (!path.starts_with("/vsi") && path.find(':') == std::string::npos && !std::filesystem::exists(path, ec))
-    throw CannotRead(fmt::format("'{}' does not exist", path), path);
-  const DatasetPtr dataset(static_cast<GDALDataset*>(
-      GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr)));
-  if (!dataset)
-    throw CannotRead(fmt::format("cannot read '{}' as points: {}", path, messages.words("GDAL does not open it")),
-                     path);
-  OGRLayer& layer = choose_layer(*dataset, options.layer, path);
+  const DatasetPtr dataset = open_vector(path, "points", messages);
+  OGRLayer& layer = choose_layer(*dataset, options.layer, path, "--layer");
   OGRFeatureDefn& definition = *layer.GetLayerDefn();
   const int field = height_field(definition, options.height_field, path);
   notes.format = dataset->GetDriverName();

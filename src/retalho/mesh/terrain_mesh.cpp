@@ -9,6 +9,7 @@
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/mesh/patch_cutter.h"
+#include "retalho/terrain/creases.h"
 
 namespace retalho {
 namespace {
@@ -180,6 +181,14 @@ class SmoothMesher {
       mesh_.positions[v] = raised(tin.points[v], tin.heights[v]);
       mesh_.normals[v] = normal_of(terrain_.gradients[v]);
     }
+    if (terrain_.creases.empty()) return;
+    // A vertex has one normal: on a crease the middle one of its sectors'.
+    std::vector<Vec3> sums(tin.vertex_count());
+    const auto vertex = sector_vertices(tin, terrain_.corner_gradients, terrain_.gradients.size());
+    for (std::size_t n = 0; n < vertex.size(); ++n)
+      sums[vertex[n]] = sums[vertex[n]] + normal_of(terrain_.gradients[n]);
+    for (std::size_t v = 0; v < sums.size(); ++v)
+      if (norm(sums[v]) > 0) mesh_.normals[v] = sums[v] / norm(sums[v]);
   }
 
   void cut_triangles() {
@@ -205,8 +214,11 @@ class SmoothMesher {
       const auto& c = pieces[piece].corners;
       cutter.set_patch(pieces[piece].net, c[0], c[1], c[2]);
     };
-    for (const std::uint32_t v : terrain_.tin.triangles[t])
-      cutter.add_vertex(terrain_.tin.points[v], terrain_.tin.heights[v], terrain_.gradients[v], v);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = terrain_.tin.triangles[t][k];
+      cutter.add_vertex(terrain_.tin.points[v], terrain_.tin.heights[v],
+                        terrain_.gradients[gradient_of(terrain_, t, k)], v);
+    }
     use_patch(0);
     const Vec2 middle = pieces[0].corners[2];
     const std::uint32_t centre =

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retalho/terrain/creases.h"
 #include "retalho/tin/predicates.h"
 
 namespace retalho {
@@ -72,6 +73,25 @@ std::string tin_fault(const Tin& tin, bool neighbors_built) {
   return {};
 }
 
+/// Creases in order, between two triangles; as many gradients as sectors.
+std::string crease_fault(const Terrain& terrain, std::size_t edges) {
+  if (terrain.creases.empty())
+    return terrain.corner_gradients.empty() ? std::string() : "corners with gradients of their own, but no creases";
+  if (terrain.kind == SurfaceKind::linear) return "creases on a linear surface";
+  const EdgeTable table = build_edges(terrain.tin);
+  for (std::size_t k = 0; k < terrain.creases.size(); ++k) {
+    const std::uint32_t e = terrain.creases[k];
+    if (e >= edges || (k > 0 && e <= terrain.creases[k - 1])) return "creases that are not ascending numbers of edges";
+    if (table.triangles[e][1] == kNone) return fmt::format("crease {} on the border", e);
+  }
+  std::size_t nodes = 0;
+  if (crease_sectors(terrain.tin, table, terrain.creases, &nodes) != terrain.corner_gradients)
+    return "the corners' gradients are not those of the creases' sectors";
+  if (terrain.gradients.size() != nodes)
+    return fmt::format("{} gradients where the creases make {}", terrain.gradients.size(), nodes);
+  return {};
+}
+
 std::string surface_fault(const Terrain& terrain) {
   const bool smooth = terrain.kind != SurfaceKind::linear;
   const bool split = terrain.kind == SurfaceKind::powell_sabin;
@@ -81,9 +101,11 @@ std::string surface_fault(const Terrain& terrain) {
   const auto wrong_length = [](std::size_t has, std::size_t needs, const char* what) {
     return has == needs ? std::string() : fmt::format("{} {} where the surface has {}", has, what, needs);
   };
-  if (std::string f = wrong_length(terrain.gradients.size(), smooth ? terrain.tin.vertex_count() : 0, "gradients");
-      !f.empty())
-    return f;
+  if (std::string f = crease_fault(terrain, edges); !f.empty()) return f;
+  if (terrain.creases.empty())
+    if (std::string f = wrong_length(terrain.gradients.size(), smooth ? terrain.tin.vertex_count() : 0, "gradients");
+        !f.empty())
+      return f;
   if (std::string f = wrong_length(terrain.edge_split.size(), split ? edges : 0, "edge splits"); !f.empty()) return f;
   if (std::string f = wrong_length(terrain.edge_fallback.size(), fallback ? edges : 0, "edge fallbacks"); !f.empty())
     return f;

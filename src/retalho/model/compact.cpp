@@ -163,6 +163,7 @@ CompactModel by_tolerance(const std::vector<Cell>& cells, const Raster& raster, 
 
 CompactModel compact_terrain(const Terrain& terrain, const Raster& raster, const CompactOptions& options,
                              const Context& context) {
+  if (!terrain.creases.empty()) throw UsageError("the compact form has no place for creases: save the exact model");
   check(options);
   return by_budget(cells_of(terrain, raster), raster, options, context);
 }

@@ -13,6 +13,7 @@
 #include "retalho/model/codec_parts.h"
 #include "retalho/model/numbers.h"
 #include "retalho/model/split_prediction.h"
+#include "retalho/terrain/creases.h"
 
 namespace retalho {
 namespace {
@@ -226,6 +227,22 @@ std::vector<std::uint8_t> decode_flags(const fb::Numbers* numbers, std::uint64_t
   return flags;
 }
 
+/// Sets the creases and which gradient each corner has; returns how many gradients there are.
+std::size_t decode_creases(const fb::Numbers& numbers, Terrain& terrain) {
+  const std::uint64_t count = numbers.count();
+  const EdgeTable edges = build_edges(terrain.tin);
+  if (count > edges.vertices.size())
+    throw CannotRead(fmt::format("{} creases of {} edges", count, edges.vertices.size()), {}, "creases");
+  for (const std::int64_t e : unpack_integers(view(&numbers, "creases"), count, "creases")) {
+    if (e < 0 || e >= static_cast<std::int64_t>(edges.vertices.size()))
+      throw CannotRead(fmt::format("crease {} is none of the {} edges", e, edges.vertices.size()), {}, "creases");
+    terrain.creases.push_back(static_cast<std::uint32_t>(e));
+  }
+  std::size_t nodes = 0;
+  terrain.corner_gradients = crease_sectors(terrain.tin, edges, terrain.creases, &nodes);
+  return nodes;
+}
+
 }  // namespace
 
 flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const Terrain& terrain, bool checked) {
@@ -238,7 +255,7 @@ flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const T
   const PointParts points = encode_points(builder, terrain);
   const auto heights = add_numbers(builder, pack_reals(terrain.tin.heights));
   const TriangleParts corners = encode_triangles(builder, terrain.tin);
-  flatbuffers::Offset<fb::Numbers> gradient_x, gradient_y, edge_split, edge_fallback;
+  flatbuffers::Offset<fb::Numbers> gradient_x, gradient_y, edge_split, edge_fallback, creases;
   if (!terrain.gradients.empty()) {
     gradient_x = add_numbers(builder, pack_component(terrain.gradients, get_x));
     gradient_y = add_numbers(builder, pack_component(terrain.gradients, get_y));
@@ -247,6 +264,10 @@ flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const T
   if (!terrain.edge_fallback.empty())
     edge_fallback = add_numbers(
         builder, pack_integers(std::vector<std::int64_t>(terrain.edge_fallback.begin(), terrain.edge_fallback.end())));
+
+  if (!terrain.creases.empty())
+    creases =
+        add_numbers(builder, pack_integers(std::vector<std::int64_t>(terrain.creases.begin(), terrain.creases.end())));
 
   fb::TerrainSurfaceBuilder table(builder);
   table.add_kind(static_cast<fb::TerrainKind>(terrain.kind));
@@ -269,6 +290,7 @@ flatbuffers::Offset<fb::TerrainSurface> encode_terrain(Builder& builder, const T
   if (!gradient_y.IsNull()) table.add_gradient_y(gradient_y);
   if (!edge_split.IsNull()) table.add_edge_split(edge_split);
   if (!edge_fallback.IsNull()) table.add_edge_fallback(edge_fallback);
+  if (!creases.IsNull()) table.add_creases(creases);
   return table.Finish();
 }
 
@@ -287,11 +309,11 @@ Terrain decode_terrain(const fb::TerrainSurface& table) {
   terrain.tin.points = decode_points(table, terrain.grid);
   terrain.tin.heights = unpack_reals(view(table.heights(), "heights"), table.vertices(), "heights");
   terrain.tin.triangles = decode_triangles(table);
-  if (table.gradient_x() || table.gradient_y())
-    terrain.gradients =
-        unpack_pairs(table.gradient_x(), table.gradient_y(), table.vertices(), "gradient_x", "gradient_y");
   try {
     build_neighbors(terrain.tin);
+    const std::size_t nodes = table.creases() ? decode_creases(*table.creases(), terrain) : table.vertices();
+    if (table.gradient_x() || table.gradient_y())
+      terrain.gradients = unpack_pairs(table.gradient_x(), table.gradient_y(), nodes, "gradient_x", "gradient_y");
     if (table.edge_split()) terrain.edge_split = decode_splits(table.edge_split(), terrain.tin);
     if (table.edge_fallback()) terrain.edge_fallback = decode_flags(table.edge_fallback(), edge_count(terrain.tin));
     if (const std::string fault = find_fault(terrain, true); !fault.empty())

@@ -55,9 +55,10 @@ void set_cubic_faces(const Terrain& terrain, const EdgeTable& edges, std::uint32
       e.face[k] = perpendicular_face(c, e, k);
       continue;
     }
-    const std::uint32_t apex = terrain.tin.triangles[neighbor][opposite_corner(edges, neighbor, edge)];
-    const double interior =
-        cubic_interior(c, e, k, terrain.tin.points[apex], terrain.tin.heights[apex], terrain.gradients[apex]);
+    const std::size_t corner = opposite_corner(edges, neighbor, edge);
+    const std::uint32_t apex = terrain.tin.triangles[neighbor][corner];
+    const double interior = cubic_interior(c, e, k, terrain.tin.points[apex], terrain.tin.heights[apex],
+                                           terrain.gradients[gradient_of(terrain, neighbor, corner)]);
     e.face[k] = (e.first[k] + e.second[k] + interior) / 3;
     sum += interior;
     ++count;
@@ -119,8 +120,10 @@ CloughTocherElement outer_ordinates(const TriangleCorners& c) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
     // Each from its own corner alone: the same bits on both sides of the edge.
-    e.first[k] = c.height[i] + dot(c.gradient[i], c.point[j] - c.point[i]) / 3;
-    e.second[k] = c.height[j] + dot(c.gradient[j], c.point[i] - c.point[j]) / 3;
+    const double from_i = c.creased ? c.along[k][0] : dot(c.gradient[i], c.point[j] - c.point[i]);
+    const double from_j = c.creased ? c.along[k][1] : dot(c.gradient[j], c.point[i] - c.point[j]);
+    e.first[k] = c.height[i] + from_i / 3;
+    e.second[k] = c.height[j] + from_j / 3;
     const Vec2 to_centroid = ((c.point[i] - c.point[k]) + (c.point[j] - c.point[k])) / 3;
     e.spoke[k] = c.height[k] + dot(c.gradient[k], to_centroid) / 3;
   }

@@ -13,7 +13,8 @@ struct SurfaceOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
   GradientKind gradients = GradientKind::normals;                     ///< how the vertex gradients are estimated
   CrossDerivative cross_derivative = CrossDerivative::perpendicular;  ///< Clough-Tocher only
-  std::optional<std::vector<Vec2>> given = {};  ///< gradients for GradientKind::given, one a vertex
+  std::optional<std::vector<Vec2>> given = {};  ///< gradients for GradientKind::given, one a vertex (or sector)
+  std::vector<std::uint32_t> creases = {};      ///< edges that a smooth surface folds along (terrain/creases.h)
 };
 
 /// A surface on any TIN (scattered points): `georef` says where its local coordinates lie.

@@ -87,8 +87,10 @@ PowellSabinElement powell_sabin_element(const TriangleCorners& c, const std::arr
     // From the lower-index end, whichever side asks: the same bits on both sides of the edge.
     const double fraction = splits[k];
     const Vec2 along = c.point[high] - c.point[low];
-    const double near_low = c.height[low] + fraction / 2 * dot(c.gradient[low], along);
-    const double near_high = c.height[high] - (1 - fraction) / 2 * dot(c.gradient[high], along);
+    const double from_low = c.creased ? c.along[k][forward ? 0 : 1] : dot(c.gradient[low], along);
+    const double from_high = c.creased ? -c.along[k][forward ? 1 : 0] : dot(c.gradient[high], along);
+    const double near_low = c.height[low] + fraction / 2 * from_low;
+    const double near_high = c.height[high] - (1 - fraction) / 2 * from_high;
     e.split_value[k] = fraction * near_high + (1 - fraction) * near_low;
     e.rib[k] = fraction * e.spoke[high] + (1 - fraction) * e.spoke[low];
     e.split[k] = forward ? fraction : 1 - fraction;

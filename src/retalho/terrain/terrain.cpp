@@ -134,7 +134,8 @@ std::size_t number_count(const Terrain& terrain) {
 }
 
 std::size_t coefficient_count(const Terrain& terrain) {
-  return static_cast<std::size_t>(row(terrain.kind).coefficients) * terrain.tin.vertex_count();
+  const std::size_t sectors = std::max(terrain.gradients.size(), terrain.tin.vertex_count());
+  return terrain.tin.vertex_count() + static_cast<std::size_t>(row(terrain.kind).coefficients - 1) * sectors;
 }
 
 }  // namespace retalho

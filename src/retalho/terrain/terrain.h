@@ -41,12 +41,22 @@ struct Terrain {
   Georef georef;
   GridDomain grid;  ///< columns == 0: made from scattered points, valid on the triangulation
   Tin tin;
-  std::vector<Vec2> gradients;  ///< one a vertex (dz/dx, dz/dy in local units); empty for linear
+  std::vector<Vec2> gradients;  ///< one a vertex (dz/dx, dz/dy in local units); with creases more; empty for linear
+  /// Edges that the surface folds along: numbers of build_edges, ascending; empty for linear. A vertex where creases
+  /// part its triangles into sectors has a gradient for each (terrain/creases.h).
+  std::vector<std::uint32_t> creases;
+  std::vector<std::array<std::uint32_t, 3>> corner_gradients;  ///< which gradient each corner has; empty: the vertex's
   std::vector<double>
       edge_split;  ///< Powell-Sabin: lambda of each edge from its lower-index end, by build_edges' order
   std::vector<std::uint8_t> edge_fallback;  ///< cubic Clough-Tocher: 1 where the edge falls back to perpendicular
   double tolerance = 0;                     ///< the max_error asked for; 0: none
 };
+
+/// The gradient's number at a corner of a triangle.
+inline std::uint32_t gradient_of(const Terrain& terrain, std::uint32_t triangle, std::size_t corner) {
+  return terrain.corner_gradients.empty() ? terrain.tin.triangles[triangle][corner]
+                                          : terrain.corner_gradients[triangle][corner];
+}
 
 /// One polynomial piece: a triangle and its ordinates (the first ordinate_count(degree) of `ordinates`).
 struct TerrainPatch {
