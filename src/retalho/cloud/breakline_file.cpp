@@ -14,6 +14,7 @@ namespace {
 
 void add_line(const OGRSimpleCurve& line, BreaklineFile& file) {
   std::vector<Vec3> points;
+  points.reserve(static_cast<std::size_t>(line.getNumPoints()));
   for (int k = 0; k < line.getNumPoints(); ++k)
     points.push_back(
         {line.getX(k), line.getY(k), line.Is3D() ? line.getZ(k) : std::numeric_limits<double>::quiet_NaN()});
