@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "inputs.h"
-#include "retalho/cloud/breaklines.h"
 #include "retalho/core/error.h"
+#include "retalho/curve/vector_file.h"
 
 namespace retalho::app {
 
@@ -28,29 +29,33 @@ void check_breakline_flags(const BreaklineFlags& flags, bool from_points) {
 ConstrainedTin triangulate(const Program& program, const PointCloud& cloud, const std::string& input,
                            const BreaklineFlags& flags, ScatteredNotes* notes, const Context& context) {
   if (!flags.given()) return {triangulate_points(cloud.positions, notes, context), {}};
-  BreaklineFile file = read_breaklines(flags.file, flags.layer, context);
+  const LineLayer layer = read_line_layer(flags.file, flags.layer, "--breakline-layer", context);
   Georef theirs;
-  theirs.crs_wkt = file.crs_wkt;
+  theirs.crs_wkt = layer.crs_wkt;
   check_same_crs(cloud.georef, input, theirs, flags.file);
-  std::size_t vertices = 0;
   const PointSummary summary = summarize(cloud);
   const Vec3 extent = summary.maximum - summary.minimum;
   // Steps as long as the points are apart.
   const double spacing = std::sqrt(extent.x * extent.y / static_cast<double>(summary.points));
-  for (std::vector<Vec3>& line : file.lines) {
-    for (Vec3& p : line) {
+  std::size_t vertices = 0;
+  std::vector<std::vector<Vec3>> breaklines;
+  for (const VectorLine& line : layer.lines) {
+    std::vector<Vec3> places;
+    places.reserve(line.points.size() + 1);
+    for (const Vec3& p : line.points) {
       const Vec2 local = cloud.georef.to_local({p.x, p.y});
-      p = {local.x, local.y, p.z};
-      ++vertices;
+      places.push_back({local.x, local.y, line.dimension == 3 ? p.z : std::numeric_limits<double>::quiet_NaN()});
     }
-    if (spacing > 0) line = with_steps(line, spacing);
+    vertices += places.size();
+    if (line.closed) places.push_back(places.front());
+    breaklines.push_back(spacing > 0 ? with_steps(places, spacing) : places);
   }
   BreaklineNotes lines;
-  ConstrainedTin made = triangulate_points(cloud.positions, file.lines, notes, &lines, context);
+  ConstrainedTin made = triangulate_points(cloud.positions, breaklines, notes, &lines, context);
   program.say(fmt::format("{}: {} breaklines with {} vertices, {} edges along them", flags.file, lines.lines, vertices,
                           made.edges.size()));
-  if (file.others > 0)
-    program.say(fmt::format("  {} geometries that are neither lines nor polygons are left out", file.others));
+  if (layer.others > 0)
+    program.say(fmt::format("  {} geometries that are neither lines nor polygons are left out", layer.others));
   if (lines.draped > 0)
     program.say(fmt::format("  {} vertices have no height: they lie on the flat surface of the points", lines.draped));
   if (lines.crossings > 0)

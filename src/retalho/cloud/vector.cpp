@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "retalho/cloud/formats.h"
-#include "retalho/cloud/vector_layer.h"
 #include "retalho/core/error.h"
+#include "retalho/raster/vector_layer.h"
 
 namespace retalho {
 namespace {

@@ -13,6 +13,7 @@
 #include "retalho/core/error.h"
 #include "retalho/raster/checked_files.h"
 #include "retalho/raster/gdal.h"
+#include "retalho/raster/vector_layer.h"
 
 namespace retalho {
 
@@ -29,7 +30,7 @@ void add_line(const OGRLineString& line, bool ring, const std::string& name, std
   out.push_back(std::move(v));
 }
 
-void add_geometry(const OGRGeometry* geometry, const std::string& name, std::vector<VectorLine>& out) {
+void add_geometry(const OGRGeometry* geometry, const std::string& name, LineLayer& out) {
   if (!geometry) return;
   std::unique_ptr<OGRGeometry> linear;
   if (geometry->hasCurveGeometry()) {
@@ -38,10 +39,10 @@ void add_geometry(const OGRGeometry* geometry, const std::string& name, std::vec
   }
   switch (wkbFlatten(geometry->getGeometryType())) {
     case wkbLineString:
-      add_line(*geometry->toLineString(), false, name, out);
+      add_line(*geometry->toLineString(), false, name, out.lines);
       break;
     case wkbPolygon:
-      for (const auto* ring : *geometry->toPolygon()) add_line(*ring, true, name, out);
+      for (const auto* ring : *geometry->toPolygon()) add_line(*ring, true, name, out.lines);
       break;
     case wkbMultiLineString:
     case wkbMultiPolygon:
@@ -49,8 +50,23 @@ void add_geometry(const OGRGeometry* geometry, const std::string& name, std::vec
       for (const auto* part : *geometry->toGeometryCollection()) add_geometry(part, name, out);
       break;
     default:
-      break;
+      ++out.others;
   }
+}
+
+void add_layer(OGRLayer& layer, LineLayer& out, const Context& context) {
+  std::size_t features = 0;
+  for (const auto& feature : layer) {
+    if (features++ % 4096 == 0) context.check();
+    const int field = feature->GetFieldIndex("name");
+    add_geometry(feature->GetGeometryRef(), field >= 0 ? feature->GetFieldAsString(field) : "", out);
+  }
+}
+
+void check_lines(const LineLayer& lines, const std::string& path, const GdalMessages& messages) {
+  if (messages.failed())
+    throw CannotRead(fmt::format("'{}' is damaged or cut off: {}", path, messages.words("")), path);
+  if (lines.lines.empty()) throw BadInput(fmt::format("'{}' holds no line and no polygon", path), path);
 }
 
 struct Format {
@@ -94,28 +110,24 @@ void write_lines(GDALDriver& driver, const std::vector<VectorLine>& lines, const
 }  // namespace
 
 std::vector<VectorLine> read_vector_lines(const std::string& path) {
-  register_gdal();
-  CPLErrorReset();
-  CPLPushErrorHandler(CPLQuietErrorHandler);
-  const Dataset data(
-      static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr)),
-      [](GDALDataset* d) {
-        if (d) GDALClose(d);
-      });
-  const std::string trouble = CPLGetLastErrorMsg();
-  CPLPopErrorHandler();
-  if (!data) {
-    if (!std::filesystem::exists(path)) throw CannotRead("no such file", path);
-    throw CannotRead(trouble.empty() ? "no vector format that GDAL knows" : trouble, path);
-  }
-  std::vector<VectorLine> out;
-  for (OGRLayer* layer : data->GetLayers())
-    for (const auto& feature : *layer) {
-      const int field = feature->GetFieldIndex("name");
-      add_geometry(feature->GetGeometryRef(), field >= 0 ? feature->GetFieldAsString(field) : "", out);
-    }
-  if (out.empty()) throw BadInput("no line or polygon in any layer", path);
-  return out;
+  const GdalMessages messages;
+  const DatasetPtr data = open_vector(path, "lines", messages);
+  LineLayer all;
+  for (OGRLayer* layer : data->GetLayers()) add_layer(*layer, all, {});
+  check_lines(all, path, messages);
+  return std::move(all.lines);
+}
+
+LineLayer read_line_layer(const std::string& path, const std::string& layer_name, const char* option,
+                          const Context& context) {
+  const GdalMessages messages;
+  const DatasetPtr data = open_vector(path, "lines", messages);
+  OGRLayer& layer = choose_layer(*data, layer_name, path, option);
+  LineLayer all;
+  all.crs_wkt = layer_wkt(layer);
+  add_layer(layer, all, context);
+  check_lines(all, path, messages);
+  return all;
 }
 
 void write_vector_lines(const std::vector<VectorLine>& lines, const std::string& path, bool overwrite) {

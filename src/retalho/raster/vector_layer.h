@@ -1,4 +1,4 @@
-// Opening a vector file's layer through GDAL. Internal to cloud/.
+// A vector file and its layers, opened through GDAL: for the readers of points (cloud/) and of lines (curve/).
 #pragma once
 
 #include <string>

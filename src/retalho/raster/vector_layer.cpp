@@ -1,4 +1,4 @@
-#include "retalho/cloud/vector_layer.h"
+#include "retalho/raster/vector_layer.h"
 
 #include <cpl_conv.h>
 #include <fmt/format.h>
