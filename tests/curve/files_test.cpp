@@ -201,6 +201,9 @@ TEST(Explicit, NoFalseJoins) {
   }
   EXPECT_THROW(trace_explicit(Expression::parse("sqrt(x)"), -3, -1), BadInput);
   EXPECT_THROW(trace_explicit(Expression::parse("x+y"), 0, 1), BadInput);
+  // A second line would have been the whole formula.
+  EXPECT_THROW(Expression::parse("x-y\n+1"), BadInput);
+  EXPECT_THROW(Expression::parse(std::string("x#a\0b\n+1", 9)), BadInput);
   EXPECT_THROW(trace_explicit(Expression::parse("x"), 1, 0), UsageError);
 }
 

@@ -183,6 +183,11 @@ double Expression::apply(const Node& node, double a, double b) {
 }
 
 Expression Expression::parse(const std::string& text) {
+  // To muParserX a new line begins another formula, whose value is all that is left, and a NUL behind a '#' is an end.
+  for (std::size_t k = 0; k < text.size(); ++k)
+    if (const auto c = static_cast<unsigned char>(text[k]); (c < ' ' && c != '\t') || c == 127)
+      throw BadInput(
+          fmt::format("the formula has a control character (code {}) at place {}: write it on one line", c, k + 1));
   Tree tree;
   tree.nodes = {{Op::x}, {Op::y}, {Op::number, std::numbers::pi}, {Op::number, std::numbers::e}};
   mup::ParserX parser(0U);  // none of its own functions: every name is ours
