@@ -44,6 +44,20 @@ TEST(FirstRoot, IsTheSmallestOneThatSubdivisionFinds) {
   EXPECT_NEAR(first_root({-1, -1.0 / 3, 1.0 / 3, 1}), 0.5, 1e-15);
 }
 
+TEST(FirstRoot, OfAGrazingRayToo) {
+  // (s - m)^2 = d^2: two roots that lie ever closer together.
+  double worst = 0;
+  test::Random random(42);
+  for (int n = 0; n < 20000; ++n) {
+    const double m = random.uniform(0.3, 0.7), d = std::pow(10.0, random.uniform(-5, -1));
+    const double a = m * m - d * d, b = a - m, c = a - 2 * m + 1;  // as a quadratic; then raised to degree 3
+    const double s = first_root({a, (a + 2 * b) / 3, (2 * b + c) / 3, c});
+    if (s < 0) continue;  // the dip is below the test's resolution
+    worst = std::max(worst, std::abs(s - (m - d)));
+  }
+  EXPECT_LT(worst, 1e-9);
+}
+
 class RaysOnSplits : public testing::TestWithParam<TetSplit> {};
 INSTANTIATE_TEST_SUITE_P(Both, RaysOnSplits, testing::Values(TetSplit::five, TetSplit::kuhn));
 

@@ -34,6 +34,10 @@ double value_at(const std::array<double, 4>& b, double s, double* slope) {
   return v * r + w * s;
 }
 
+double bend_at(const std::array<double, 4>& b, double s) {
+  return 6 * ((1 - s) * (b[2] - 2 * b[1] + b[0]) + s * (b[3] - 2 * b[2] + b[1]));
+}
+
 /// The root between `low` and `high`, where the signs differ (`low_negative`: the one at low).
 double bracketed_root(const std::array<double, 4>& b, double low, double high, double f_low, double f_high) {
   const bool low_negative = f_low < 0;
@@ -47,7 +51,9 @@ double bracketed_root(const std::array<double, 4>& b, double low, double high, d
       if (f == 0) return s;
       next = 0.5 * (low + high);
     }
-    if (std::abs(next - s) < 1e-6) return next;  // the step after it would be about the square of this
+    // The step after this one would be about its square times f''/2f': small at a simple root, not where a ray grazes.
+    const double step = std::abs(next - s);
+    if (step < 1e-10 || (step < 1e-6 && step * step * std::abs(bend_at(b, s)) < 1e-10 * std::abs(slope))) return next;
     s = next;
   }
   return s;
