@@ -116,13 +116,13 @@ class NearestPlane {
 using Values = std::map<std::string, double>;
 
 Values measure(const PointCloud& cloud, const PointCloud& truth, const TetraQuadFitOptions& options,
-               const std::function<double(Vec3)>& distance, std::size_t adaptive = 0, double share = 0.5) {
+               const std::function<double(Vec3)>& distance, std::size_t adaptive = 0) {
   Values values;
   const double start = cpu_now(), size = diagonal(truth);
   TetraQuadFitReport report;
-  const TetraQuad surface = adaptive > 0 ? fit_tetraquad_adaptive(cloud, {.coefficients = adaptive, .share = share},
-                                                                  options, &report, one_thread())
-                                         : fit_tetraquad(cloud, options, &report, one_thread());
+  const TetraQuad surface =
+      adaptive > 0 ? fit_tetraquad_adaptive(cloud, {.coefficients = adaptive}, options, &report, one_thread())
+                   : fit_tetraquad(cloud, options, &report, one_thread());
   values["cpu"] = cpu_now() - start;
   values["memory"] = peak_megabytes();
   values["iterations"] = report.iterations;
@@ -198,7 +198,7 @@ Values run_bumps() {
   const NearestPlane distance(cloud);
   const auto to_truth = [&](Vec3 p) { return distance(p); };
   const TetraQuadFitOptions light = {.smoothness = 0.1};
-  Values values = measure(cloud, truth, light, to_truth, 22000, 0.25);  // a quarter a pass: more passes, 4 % better
+  Values values = measure(cloud, truth, light, to_truth, 22000);
   Values coarse = measure(cloud, truth, {.resolution = 24, .smoothness = 0.1}, to_truth);
   Values fine = measure(cloud, truth, {.resolution = 32, .smoothness = 0.1}, to_truth);
   const double order =

@@ -14,7 +14,7 @@ struct TetraQuadAdaptiveOptions {
   double quantile = 0.99;
   int roots = 6;           ///< cubes along the longest side of the points' box, 2 to 64
   int start_level = 4;     ///< bisections before the first fit, 0 to 12
-  double share = 0.5;      ///< of the whole residual that a pass marks, above 0, at most 1
+  double share = 0.25;     ///< of the whole residual that a pass marks, above 0, at most 1
   std::size_t fewest = 6;  ///< points in a tetrahedron that is bisected; 20 for noisy points
   int growth = 3;          ///< as TetraQuadFitOptions::growth
 };
