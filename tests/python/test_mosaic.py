@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from test_tiles import Cluster, clusters, digest, sweep, wait_for
+from test_tiles import Cluster, clusters, die_half_way, digest, finish, lose_a_worker, sweep
 
 import retalho
 
@@ -93,36 +93,20 @@ def test_the_same_bytes_by_anyone(
 
     # Two workers, and how much memory they took: their own of Python and Dask, and a tile's.
     cluster = clusters(2)
-    driver = drive(mosaic, tmp_path / "idle", cluster.address)
-    words = driver.communicate(timeout=300)[1]
-    assert driver.returncode == 0, words
+    finish(drive(mosaic, tmp_path / "idle", cluster.address))
     peaks = [peak_megabytes(worker) for worker in cluster.workers]
     assert digest(tmp_path / "idle") == expected
     limit = 200 + 9 * 400 * (SIZE + 1) ** 2 / 2**20  # docs/tiles.md: nine triangulations; a fitted tile's 2 kB a vertex
     print(f"peak memory of the workers: {peaks[0]:.0f} and {peaks[1]:.0f} MB, limit {limit:.0f} MB")
     assert max(peaks) < limit
 
-    # One worker dies at a fifth of the 128 files.
-    driver = drive(mosaic, tmp_path / "lost", cluster.address)
-    made = wait_for(tmp_path / "lost", 26, driver)
-    cluster.workers[0].send_signal(signal.SIGKILL)
-    assert made < 120, "it was too late to be a test"
-    words = driver.communicate(timeout=300)[1]
-    assert driver.returncode == 0, words
-    sweep(tmp_path / "lost")
+    lose_a_worker(cluster, drive(mosaic, tmp_path / "lost", cluster.address), tmp_path / "lost", 120)
     assert digest(tmp_path / "lost") == expected
     cluster.stop()
 
-    # Scheduler, workers and driver die half way; the program does the rest.
     doomed = clusters(2)
-    driver = drive(mosaic, tmp_path / "doomed", doomed.address)
-    made = wait_for(tmp_path / "doomed", 64, driver)
-    doomed.stop()
-    driver.kill()
-    driver.communicate()
-    assert made < 128 and not (tmp_path / "doomed" / "index.json").exists()
-    for path in (tmp_path / "doomed").glob("*.retalho"):
-        retalho.load(path)  # nothing torn under a final name
+    die_half_way(doomed, drive(mosaic, tmp_path / "doomed", doomed.address), tmp_path / "doomed")
+    # The program does the rest.
     subprocess.run([program, "fit", mosaic, "-o", tmp_path / "doomed", *OPTIONS, "--jobs", "2", "-q"], check=True,
                    capture_output=True)
     sweep(tmp_path / "doomed")

@@ -227,6 +227,31 @@ def wait_for(folder: pathlib.Path, count: int, driver: subprocess.Popen[str]) ->
     raise AssertionError("nothing is made")
 
 
+def finish(driver: subprocess.Popen[str]) -> None:
+    words = driver.communicate(timeout=300)[1]
+    assert driver.returncode == 0, words
+
+
+def lose_a_worker(cluster: Cluster, driver: subprocess.Popen[str], folder: pathlib.Path, late: int) -> None:
+    """One of two workers dies when a fifth of the 128 files is there: the other one does its tasks."""
+    made = wait_for(folder, 26, driver)
+    cluster.workers[0].send_signal(signal.SIGKILL)
+    assert made < late, "it was too late to be a test"
+    finish(driver)
+    sweep(folder)
+
+
+def die_half_way(doomed: Cluster, driver: subprocess.Popen[str], folder: pathlib.Path) -> None:
+    """Scheduler, workers and driver die when half of the 128 files are there."""
+    made = wait_for(folder, 64, driver)
+    doomed.stop()
+    driver.kill()
+    driver.communicate()
+    assert not (folder / "index.json").exists() and made < 128
+    for path in folder.glob("*.retalho"):
+        retalho.load(path)  # nothing torn under a final name
+
+
 @pytest.fixture
 def large(tmp_path: pathlib.Path) -> pathlib.Path:
     """64 tiles that take some time."""
@@ -245,41 +270,20 @@ def test_dask_workers_and_their_deaths(
     expected = digest(tmp_path / "one")
 
     calm = clusters(2)
-    driver = drive(large, tmp_path / "calm", calm.address)
-    words = driver.communicate(timeout=200)[1]
-    assert driver.returncode == 0, words
+    finish(drive(large, tmp_path / "calm", calm.address))
     assert digest(tmp_path / "calm") == expected
-
-    # One of two workers dies when a fifth of the 128 files is there: the other one does its tasks.
-    driver = drive(large, tmp_path / "lost", calm.address)
-    made = wait_for(tmp_path / "lost", 26, driver)
-    calm.workers[0].send_signal(signal.SIGKILL)
-    assert made < 64, "it was too late to be a test"
-    words = driver.communicate(timeout=200)[1]
-    assert driver.returncode == 0, words
-    sweep(tmp_path / "lost")
+    lose_a_worker(calm, drive(large, tmp_path / "lost", calm.address), tmp_path / "lost", 64)
     assert digest(tmp_path / "lost") == expected
     calm.stop()
 
-    # Scheduler, workers and driver die half way; another run with another cluster does the rest.
     doomed = clusters(2)
     folder = tmp_path / "doomed"
-    driver = drive(large, folder, doomed.address)
-    made = wait_for(folder, 64, driver)
-    doomed.stop()
-    driver.kill()
-    driver.communicate()
-    assert not (folder / "index.json").exists() and made < 128
-    whole = {path: path.stat().st_mtime_ns for path in folder.glob("tin-*.retalho")}
-    for path in folder.glob("*.retalho"):
-        retalho.load(path)  # nothing torn under a final name
-    second = clusters(2)
-    driver = drive(large, folder, second.address)
-    words = driver.communicate(timeout=200)[1]
-    assert driver.returncode == 0, words
+    die_half_way(doomed, drive(large, folder, doomed.address), folder)
+    assert len(list(folder.glob("tin-*.retalho"))) >= 60
+    second = clusters(2)  # another run with another cluster does the rest
+    finish(drive(large, folder, second.address))
     sweep(folder)
     assert digest(folder) == expected
-    assert len(whole) >= 60
 
 
 def test_dask_on_this_machine(dem: pathlib.Path, tmp_path: pathlib.Path) -> None:

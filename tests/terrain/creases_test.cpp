@@ -17,6 +17,8 @@
 namespace retalho {
 namespace {
 
+using test::jet_of;
+
 using Line = std::vector<Vec3>;
 
 struct Variant {
@@ -100,20 +102,6 @@ TEST(Creases, WithoutThemTheFoldIsRounded) {
     }
   EXPECT_LT(worst_with, 1e-9);
   EXPECT_GT(worst_without, 0.005);
-}
-
-/// Value and gradient of a piece at a point.
-Jet jet_of(const TerrainPatch& patch, Vec2 p) {
-  const TriangleFrame frame(patch.corners[0], patch.corners[1], patch.corners[2]);
-  const Barycentric u = frame.barycentric(p);
-  if (patch.degree == 2) {
-    TriangleNet<2> net;
-    std::copy_n(patch.ordinates.begin(), net.size(), net.begin());
-    return evaluate_jet<2>(net, frame, u);
-  }
-  TriangleNet<3> net;
-  std::copy_n(patch.ordinates.begin(), net.size(), net.begin());
-  return evaluate_jet<3>(net, frame, u);
 }
 
 /// The piece of a triangle that has most of the edge point `p` in it.

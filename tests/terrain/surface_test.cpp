@@ -49,19 +49,6 @@ Terrain rough(std::vector<Vec2> points, const Variant& variant, std::uint64_t se
   return with_gradients(std::move(tin), variant, random_gradients(n, seed + 1));
 }
 
-Jet jet_of(const TerrainPatch& patch, Vec2 p) {
-  const TriangleFrame frame(patch.corners[0], patch.corners[1], patch.corners[2]);
-  const Barycentric u = frame.barycentric(p);
-  if (patch.degree == 2) {
-    TriangleNet<2> net;
-    std::copy_n(patch.ordinates.begin(), net.size(), net.begin());
-    return evaluate_jet<2>(net, frame, u);
-  }
-  TriangleNet<3> net;
-  std::copy_n(patch.ordinates.begin(), net.size(), net.begin());
-  return evaluate_jet<3>(net, frame, u);
-}
-
 TEST(Surfaces, VertexHeightsAndGradientsAreReproduced) {
   for (const Variant& variant : kSmooth) {
     const Terrain terrain = rough(jittered_points(15, 1), variant, 2);

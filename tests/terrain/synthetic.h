@@ -87,4 +87,18 @@ inline Vec2 gradient_of(const HeightFunction& f, Vec2 p) {
   return {(f({p.x + h, p.y}) - f({p.x - h, p.y})) / (2 * h), (f({p.x, p.y + h}) - f({p.x, p.y - h})) / (2 * h)};
 }
 
+/// Value and gradient of a piece at a point.
+inline Jet jet_of(const TerrainPatch& patch, Vec2 p) {
+  const TriangleFrame frame(patch.corners[0], patch.corners[1], patch.corners[2]);
+  const Barycentric u = frame.barycentric(p);
+  if (patch.degree == 2) {
+    TriangleNet<2> net;
+    std::copy_n(patch.ordinates.begin(), net.size(), net.begin());
+    return evaluate_jet<2>(net, frame, u);
+  }
+  TriangleNet<3> net;
+  std::copy_n(patch.ordinates.begin(), net.size(), net.begin());
+  return evaluate_jet<3>(net, frame, u);
+}
+
 }  // namespace retalho::test

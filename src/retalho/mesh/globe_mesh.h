@@ -15,10 +15,10 @@ namespace retalho {
 struct QuantizedMeshOptions {
   double tolerance = 0;  ///< height units, at the finest level, against the samples; twice as much a level above it; 0:
                          ///< a thousandth of the height range
-  int level = -1;       ///< the finest; -1: whose samples are as fine as the model's cells
-  double outside = 0;   ///< the height of what the model does not cover, as tiles have no holes
-  bool normals = true;  ///< with the extension of oct-encoded normals
-  bool gzip = true;     ///< as servers send them; Cesium takes both
+  int level = -1;        ///< the finest; -1: whose samples are as fine as the model's cells
+  double outside = 0;    ///< the height of what the model does not cover, as tiles have no holes
+  bool normals = true;   ///< with the extension of oct-encoded normals
+  bool gzip = true;      ///< as servers send them; Cesium takes both
 };
 struct GlobeNotes {
   std::size_t tiles = 0, triangles = 0, bytes = 0;

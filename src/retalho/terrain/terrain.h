@@ -45,7 +45,8 @@ struct Terrain {
   /// Edges that the surface folds along: numbers of build_edges, ascending; empty for linear. A vertex where creases
   /// part its triangles into sectors has a gradient for each (terrain/creases.h).
   std::vector<std::uint32_t> creases;
-  std::vector<std::array<std::uint32_t, 3>> corner_gradients;  ///< which gradient each corner has; empty: the vertex's
+  std::vector<std::array<std::uint32_t, 3>> corner_gradients;  ///< which gradient each corner has: crease_sectors of
+                                                               ///< the creases, kept for speed; empty: the vertex's
   std::vector<double>
       edge_split;  ///< Powell-Sabin: lambda of each edge from its lower-index end, by build_edges' order
   std::vector<std::uint8_t> edge_fallback;  ///< cubic Clough-Tocher: 1 where the edge falls back to perpendicular
