@@ -85,6 +85,16 @@ TetForest decode_forest(const fb::AdaptiveTetraQuadSurface& table) {
   }
 }
 
+/// What the tables of grids and of adaptive meshes both have.
+template <class Table>
+void add_frame(Table& table, flatbuffers::Offset<fb::Georef> georef, const TetMesh& mesh) {
+  table.add_georef(georef);
+  table.add_origin_x(mesh.origin.x);
+  table.add_origin_y(mesh.origin.y);
+  table.add_origin_z(mesh.origin.z);
+  table.add_step(mesh.step);
+}
+
 }  // namespace
 
 flatbuffers::Offset<fb::TetraQuadSurface> encode_tetraquad(flatbuffers::FlatBufferBuilder& builder,
@@ -101,11 +111,7 @@ flatbuffers::Offset<fb::TetraQuadSurface> encode_tetraquad(flatbuffers::FlatBuff
   }
   const auto quadrics = encode_quadrics(builder, surface.quadrics);
   fb::TetraQuadSurfaceBuilder table(builder);
-  table.add_georef(georef);
-  table.add_origin_x(mesh.origin.x);
-  table.add_origin_y(mesh.origin.y);
-  table.add_origin_z(mesh.origin.z);
-  table.add_step(mesh.step);
+  add_frame(table, georef, mesh);
   table.add_split(static_cast<fb::TetSplit>(mesh.split));
   table.add_tetrahedra(mesh.tets.size());
   table.add_vertices(mesh.lattice.size());
@@ -173,11 +179,7 @@ flatbuffers::Offset<fb::AdaptiveTetraQuadSurface> encode_adaptive(flatbuffers::F
   const auto present = add_numbers(builder, pack_integers(belongs));
   const auto quadrics = encode_quadrics(builder, surface.quadrics);
   fb::AdaptiveTetraQuadSurfaceBuilder table(builder);
-  table.add_georef(georef);
-  table.add_origin_x(mesh.origin.x);
-  table.add_origin_y(mesh.origin.y);
-  table.add_origin_z(mesh.origin.z);
-  table.add_step(mesh.step);
+  add_frame(table, georef, mesh);
   table.add_cubes(cubes.size());
   table.add_nodes(marks.size());
   table.add_leaves(belongs.size());
