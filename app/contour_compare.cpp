@@ -8,6 +8,7 @@
 #include "fitting.h"
 #include "retalho/core/error.h"
 #include "retalho/level/contour.h"
+#include "retalho/raster/part.h"
 #include "retalho/render/contour_path.h"
 #include "retalho/render/curve_picture.h"
 #include "retalho/render/field.h"
@@ -58,23 +59,8 @@ std::vector<std::string> draw(const Program& program, const std::vector<Named>& 
 
 Raster middle_of(const Raster& raster, int zoom) {
   if (zoom <= 0 || (zoom >= raster.columns && zoom >= raster.rows)) return raster;
-  Raster part;
-  part.columns = std::min(zoom, raster.columns);
-  part.rows = std::min(zoom, raster.rows);
-  part.cell_width = raster.cell_width;
-  part.cell_height = raster.cell_height;
-  part.height_unit = raster.height_unit;
-  part.georef = raster.georef;
-  const int left = (raster.columns - part.columns) / 2, top = (raster.rows - part.rows) / 2;
-  const Vec2 corner = raster.georef.to_crs(raster.centre(left, top));
-  part.georef.origin_x = corner.x;
-  part.georef.origin_y = corner.y;
-  std::vector<double> heights;
-  heights.reserve(part.cells());
-  for (int r = 0; r < part.rows; ++r)
-    for (int c = 0; c < part.columns; ++c) heights.push_back(raster.at(left + c, top + r));
-  part.heights = std::move(heights);
-  return part;
+  const int columns = std::min(zoom, raster.columns), rows = std::min(zoom, raster.rows);
+  return part_of(raster, {(raster.columns - columns) / 2, (raster.rows - rows) / 2, columns, rows});
 }
 
 std::vector<std::string> compare_grid_surfaces(const Program& program, const Raster& raster,

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "retalho/core/error.h"
+#include "retalho/raster/part.h"
 
 namespace retalho {
 namespace {
@@ -217,24 +216,6 @@ Mask own_cells(const TiledIndex& index, const TileEntry& entry) {
   return own;
 }
 
-Raster part_of(const Raster& whole, int column, int row, int columns, int rows) {
-  Raster part = whole;
-  part.columns = columns;
-  part.rows = rows;
-  std::visit(
-      [&](const auto& from) {
-        std::remove_cvref_t<decltype(from)> heights;
-        heights.reserve(part.cells());
-        for (int r = 0; r < rows; ++r) {
-          const auto begin = from.begin() + static_cast<std::ptrdiff_t>(whole.index(column, row + r));
-          heights.insert(heights.end(), begin, begin + columns);
-        }
-        part.heights = std::move(heights);
-      },
-      whole.heights);
-  return part;
-}
-
 }  // namespace
 
 ErrorReport assess_tiles(TileReader& reader, const std::function<Raster(const CellWindow&)>& read, double tolerance,
@@ -254,7 +235,7 @@ ErrorReport assess_tiles(TileReader& reader, const std::function<Raster(const Ce
     const Raster around = read(wide);
     if (around.columns != wide.columns || around.rows != wide.rows)
       throw BadInput("the grid is not the one that the tiled model was made from: its size is another one");
-    Raster raster = part_of(around, w.column - wide.column, w.row - wide.row, w.columns, w.rows);
+    Raster raster = part_of(around, {w.column - wide.column, w.row - wide.row, w.columns, w.rows});
     const auto tile = reader.tile(entry.row, entry.column);
     if (tile) raster.georef = tile->terrain().georef;
     const Mask own = own_cells(index, entry);
