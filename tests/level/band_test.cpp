@@ -3,11 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "level/contour_support.h"
-#include "retalho/core/error.h"
 #include "retalho/level/contour.h"
+#include "retalho/terrain/locate.h"
 #include "retalho/terrain/powell_sabin.h"
 #include "terrain/synthetic.h"
 
@@ -35,13 +36,20 @@ void expect_cover(const ContourSet& set, const BandSet& bands, double valid_area
                   const std::function<bool(Vec2)>& valid, test::Random& random) {
   double total = 0;
   std::set<std::pair<double, double>> on_rings;
+  const auto expect_simple = [](const std::vector<Vec2>& ring) {
+    std::set<std::pair<double, double>> places;
+    for (const Vec2 p : ring) places.insert({p.x, p.y});
+    EXPECT_EQ(places.size(), ring.size()) << "a ring touches itself";
+  };
   for (const BandPolygon& polygon : bands.polygons) {
     EXPECT_GT(area(polygon.outer.points), 0);
     total += area(polygon.outer.points);
+    expect_simple(polygon.outer.points);
     for (const Vec2 p : polygon.outer.points) on_rings.insert({p.x, p.y});
     for (const BandRing& hole : polygon.holes) {
       EXPECT_LT(area(hole.points), 0);
       total += area(hole.points);
+      expect_simple(hole.points);
       for (const Vec2 p : hole.points) on_rings.insert({p.x, p.y});
       // A hole lies inside of its own outer ring: a point beside its first edge does.
       const Vec2 middle = 0.5 * (hole.points[0] + hole.points[1]);
@@ -138,7 +146,79 @@ TEST(VoidCells, LinesOfAModelEndOnTheirBorder) {
   EXPECT_NEAR(length, 7, 1e-9);
   ContourExtras extras;
   extras.want_bands = true;
-  EXPECT_THROW(trace_contours(t, {3.2}, {.tolerance = 0.1}, {}, &extras), BadInput);
+  trace_contours(t, {3.2}, {.tolerance = 0.1}, {}, &extras);
+  double total = 0;
+  for (const BandPolygon& polygon : extras.bands.polygons) {
+    total += area(polygon.outer.points);
+    EXPECT_TRUE(polygon.holes.empty());  // the line runs through the cell without data: both bands stop at it
+  }
+  EXPECT_NEAR(total, 63, 1e-9);
+  EXPECT_EQ(extras.bands.polygons.size(), 2U);
+}
+
+/// Random surfaces over grids with many holes, the outline through cells' corners and through cells without data.
+TEST(VoidCells, BandsOfAModelCoverItsCellsWithData) {
+  test::Random random;
+  for (const SurfaceKind kind : {SurfaceKind::linear, SurfaceKind::powell_sabin, SurfaceKind::clough_tocher})
+    for (int round = 0; round < 40; ++round) {
+      SCOPED_TRACE(testing::Message() << "kind " << static_cast<int>(kind) << ", round " << round);
+      constexpr int kSide = 12;
+      constexpr double kWidth = 2, kHeight = 3;
+      Terrain t;
+      t.kind = kind;
+      // Vertices at cells' centres, as fits make them, now and then at any place; the hull has slanting sides.
+      std::set<std::pair<double, double>> places;
+      const bool anywhere = round % 4 == 3;
+      for (int i = 0; i < 30; ++i) {
+        const auto place = [&] {
+          return anywhere ? random.uniform(0, kSide - 1) : static_cast<double>(random.index(kSide));
+        };
+        places.insert({kWidth * place(), -kHeight * place()});
+      }
+      std::vector<Vec2> points;
+      for (const auto& [x, y] : places) points.push_back({x, y});
+      t.tin = test::delaunay(points, [&](Vec2) { return random.uniform(0, 10); });
+      if (kind != SurfaceKind::linear)
+        for (std::size_t i = 0; i < t.tin.points.size(); ++i)
+          t.gradients.push_back({random.uniform(-5, 5), random.uniform(-5, 5)});
+      if (kind == SurfaceKind::powell_sabin) t.edge_split = powell_sabin_splits(t.tin, build_edges(t.tin));
+      t.grid = {kSide, kSide, kWidth, kHeight, Mask(kSide, kSide, true)};
+      const double share = 0.05 + 0.1 * (round % 5);
+      for (int r = 0; r < kSide; ++r)
+        for (int c = 0; c < kSide; ++c)
+          if (random.chance(share)) t.grid.valid.set(c, r, false);
+      // The valid area, cell by cell: the outline's polygon clipped to each.
+      const PointLocator locator(t.tin);
+      double valid_area = 0;
+      for (std::size_t k = 0; k < t.tin.triangle_count(); ++k)
+        for (int r = 0; r < kSide; ++r)
+          for (int c = 0; c < kSide; ++c)
+            if (t.grid.valid.get(c, r))
+              valid_area += test::clipped_area(
+                  {t.tin.points[t.tin.triangles[k][0]], t.tin.points[t.tin.triangles[k][1]],
+                   t.tin.points[t.tin.triangles[k][2]]},
+                  {(c - 0.5) * kWidth, -(r + 0.5) * kHeight}, {(c + 0.5) * kWidth, -(r - 0.5) * kHeight});
+      ContourExtras extras;
+      extras.want_bands = true;
+      const ContourSet set = trace_contours(t, contour_levels(-20, 30, round % 7 == 0 ? 60 : 1.9),
+                                            {.tolerance = 0.05, .simplify = round % 2 == 0}, {}, &extras);
+      expect_cover(
+          set, extras.bands, valid_area, {0, -kHeight * kSide}, {kWidth * kSide, 0},
+          [&](Vec2 p) { return t.grid.has_data(p) && locator.locate(p) != kNone; }, random);
+      // Lines meet nowhere, but a line through a cell's corner may end there and start again on the other side.
+      std::map<std::pair<double, double>, std::size_t> ends;
+      std::size_t twice = 0;
+      for (std::size_t l = 0; l < set.lines.size(); ++l)
+        for (const std::size_t end : {set.lines[l].begin, set.lines[l].end - 1}) {
+          const Vec2 p = set.points[end];
+          const auto [other, first] = ends.emplace(std::pair{p.x, p.y}, l);
+          if (set.lines[l].closed || first || other->second == l) continue;
+          ++twice;
+          EXPECT_EQ(std::abs(std::remainder(p.x, kWidth)), 0.5 * kWidth);
+          EXPECT_EQ(std::abs(std::remainder(p.y, kHeight)), 0.5 * kHeight);
+        }
+      EXPECT_EQ(test::count_meetings(set, 1), twice);
+    }
 }
 
 }  // namespace

@@ -30,6 +30,27 @@ inline Raster contour_raster(int columns, int rows, const std::function<double(i
   return raster;
 }
 
+/// The area of a convex polygon in a box (Sutherland and Hodgman).
+inline double clipped_area(std::vector<Vec2> ring, Vec2 low, Vec2 high) {
+  const auto cut = [&](const std::function<double(Vec2)>& inside) {
+    std::vector<Vec2> kept;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 a = ring[i], b = ring[(i + 1) % ring.size()];
+      const double u = inside(a), v = inside(b);
+      if (u >= 0) kept.push_back(a);
+      if ((u >= 0) != (v >= 0)) kept.push_back(a + (u / (u - v)) * (b - a));
+    }
+    ring = std::move(kept);
+  };
+  cut([&](Vec2 p) { return p.x - low.x; });
+  cut([&](Vec2 p) { return high.x - p.x; });
+  cut([&](Vec2 p) { return p.y - low.y; });
+  cut([&](Vec2 p) { return high.y - p.y; });
+  double sum = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(ring[i], ring[(i + 1) % ring.size()]) / 2;
+  return std::abs(sum);
+}
+
 struct Segment {
   Vec2 a, b;
   int level;

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "retalho/core/error.h"
-#include "retalho/level/band_nesting.h"
+#include "retalho/level/pinches.h"
 
 namespace retalho {
 namespace {
@@ -20,18 +20,15 @@ struct BorderStep {
 std::vector<std::size_t> successors(const std::vector<DirectedBorder>& border) {
   std::unordered_multimap<std::uint64_t, std::size_t> from;
   from.reserve(border.size());
-  std::unordered_map<std::uint64_t, Vec2> place;
-  for (std::size_t e = 0; e < border.size(); ++e) {
-    from.emplace(border[e].from, e);
-    place.emplace(border[e].from, border[e].place);
-  }
+  for (std::size_t e = 0; e < border.size(); ++e) from.emplace(border[e].from, e);
   std::vector<std::size_t> next(border.size());
   for (std::size_t e = 0; e < border.size(); ++e) {
-    const Vec2 here = place.at(border[e].to), in = here - border[e].place;
+    const Vec2 in = border[e].along;
     double best = -10;
     const auto [first, last] = from.equal_range(border[e].to);
+    if (first == last) throw Error(Error::Kind::internal, "bands: the border of the valid area has a gap");
     for (auto it = first; it != last; ++it) {
-      const Vec2 out = place.at(border[it->second].to) - here;
+      const Vec2 out = border[it->second].along;
       const double turn = std::atan2(cross(in, out), dot(in, out));
       // Straight back is the sharpest turn to the right.
       const double angle = turn > 3.14159 ? -turn : turn;
@@ -50,8 +47,9 @@ class BandBuilder {
     rings_.resize(set.levels.size() + 1);
   }
 
-  void walk_border(const std::vector<DirectedBorder>& border) {
+  void walk_border(const std::vector<DirectedBorder>& border, const BandLocator* around) {
     const std::vector<std::size_t> next = successors(border);
+    pinches_ = Pinches(border, set_);
     std::vector<std::uint8_t> done(border.size(), 0);
     for (std::size_t start = 0; start < border.size(); ++start) {
       if (done[start] != 0) continue;
@@ -59,8 +57,12 @@ class BandBuilder {
       std::vector<std::pair<std::uint32_t, Vec2>> items;
       std::size_t first_root = 0;
       bool has_root = false;
+      int band = DirectedBorder::kUnknownBand;
+      std::size_t middle = start;
       for (std::size_t e = start; done[e] == 0; e = next[e]) {
         done[e] = 1;
+        if (border[e].band >= 0) band = border[e].band;
+        if (border[e].band == DirectedBorder::kAskMiddle) middle = e;
         items.emplace_back(kNoPoint, border[e].place);
         for (const std::uint32_t root : border[e].roots) {
           if (!has_root) first_root = items.size();
@@ -72,7 +74,10 @@ class BandBuilder {
         std::vector<Vec2> ring;
         ring.reserve(items.size());
         for (const auto& item : items) ring.push_back(item.second);
-        rings_[static_cast<std::size_t>(border[start].band)].push_back(std::move(ring));
+        if (band < 0 && around != nullptr)
+          band = around->band_at(0.5 * (border[middle].place + border[next[middle]].place));
+        if (band < 0) throw Error(Error::Kind::internal, "bands: a border without lines lies outside of the area");
+        rings_[static_cast<std::size_t>(band)].push_back(std::move(ring));
         continue;
       }
       std::uint32_t current = items[first_root].first;
@@ -134,8 +139,10 @@ class BandBuilder {
   BandSet finish() {
     BandSet bands;
     bands.levels = set_.levels;
-    for (std::size_t b = 0; b < rings_.size(); ++b)
+    for (std::size_t b = 0; b < rings_.size(); ++b) {
+      pinches_.part(rings_[b]);
       nest_rings(static_cast<int>(b), std::move(rings_[b]), bands.polygons);
+    }
     return bands;
   }
 
@@ -152,14 +159,15 @@ class BandBuilder {
   const ContourSet& set_;
   const std::vector<std::array<std::uint32_t, 2>>& ends_;
   std::vector<std::vector<std::vector<Vec2>>> rings_;
+  Pinches pinches_;
   std::unordered_map<std::uint32_t, BorderStep> after_;
   std::unordered_map<std::uint32_t, std::size_t> starts_, stops_;
 };
 
-/// Roots of all levels in their order from one end of an edge to the other.
-void sort_along(Vec2 from, Vec2 to, const Trace& trace, std::vector<std::uint32_t>& roots) {
-  std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return dot(trace.points[a] - from, to - from) < dot(trace.points[b] - from, to - from);
+/// Brings the roots of all levels into the order of the walk.
+void sort_along(DirectedBorder& piece, const Trace& trace) {
+  std::stable_sort(piece.roots.begin(), piece.roots.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return dot(trace.points[a] - piece.place, piece.along) < dot(trace.points[b] - piece.place, piece.along);
   });
 }
 
@@ -176,15 +184,16 @@ std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels
   const auto add = [&](int column, int row, bool horizontal, bool forward) {
     const int c1 = column + (horizontal ? 1 : 0), r1 = row + (horizontal ? 0 : 1);
     const int c = forward ? column : c1, r = forward ? row : r1;
-    DirectedBorder piece{grid.node(c, r),
-                         grid.node(forward ? c1 : column, forward ? r1 : row),
-                         {c * grid.cell_width, -r * grid.cell_height},
-                         levels.at_most(2.0 * grid.z[grid.node(c, r)]),
-                         {}};
+    DirectedBorder piece{
+        grid.node(c, r),
+        grid.node(forward ? c1 : column, forward ? r1 : row),
+        {c * grid.cell_width, -r * grid.cell_height},
+        {(forward ? c1 - c : column - c) * grid.cell_width, (forward ? r - r1 : r - row) * grid.cell_height},
+        levels.at_most(2.0 * grid.z[grid.node(c, r)]),
+        {}};
     if (const auto found = roots.find(key(column, row, horizontal)); found != roots.end()) {
       for (const EdgeRoot& root : found->second) piece.roots.push_back(root.point);
-      const Vec2 other{(forward ? c1 : column) * grid.cell_width, -(forward ? r1 : row) * grid.cell_height};
-      sort_along(piece.place, other, trace, piece.roots);
+      sort_along(piece, trace);
     }
     border.push_back(std::move(piece));
   };
@@ -210,20 +219,25 @@ std::vector<DirectedBorder> terrain_border(const Terrain& terrain, const EdgeTab
     for (std::size_t k = 0; k < 3; ++k) {
       if (tin.neighbors[t][k] != kNone) continue;
       const std::uint32_t a = tin.triangles[t][(k + 1) % 3], b = tin.triangles[t][(k + 2) % 3];
-      DirectedBorder piece{a, b, tin.points[a], levels.at_most(2 * std::nearbyint(tin.heights[a] * per_unit)), {}};
+      DirectedBorder piece{a,
+                           b,
+                           tin.points[a],
+                           tin.points[b] - tin.points[a],
+                           levels.at_most(2 * std::nearbyint(tin.heights[a] * per_unit)),
+                           {}};
       const std::size_t first = static_cast<std::size_t>(outer.halves) * edges.of_triangle[t][k];
       for (std::uint32_t i = outer.start[first]; i < outer.start[first + static_cast<std::size_t>(outer.halves)]; ++i)
         piece.roots.push_back(outer.roots[i].point);
-      sort_along(tin.points[a], tin.points[b], trace, piece.roots);
+      sort_along(piece, trace);
       border.push_back(std::move(piece));
     }
   return border;
 }
 
 BandSet build_bands(const ContourSet& set, const std::vector<std::array<std::uint32_t, 2>>& ends,
-                    const std::vector<DirectedBorder>& border) {
+                    const std::vector<DirectedBorder>& border, const BandLocator* around) {
   BandBuilder builder(set, ends);
-  builder.walk_border(border);
+  builder.walk_border(border, around);
   builder.walk_lines();
   return builder.finish();
 }

@@ -13,6 +13,7 @@
 #include "retalho/level/simplify.h"
 #include "retalho/level/trace_grid.h"
 #include "retalho/level/trace_terrain.h"
+#include "retalho/level/void_border.h"
 
 namespace retalho {
 namespace {
@@ -125,18 +126,26 @@ ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, co
   const double per_unit = terrain_quanta(terrain, edges, context);
   const FixedLevels fixed_levels(levels, per_unit);
   const bool want_bands = extras != nullptr && extras->want_bands, voids = has_voids(terrain.grid);
-  if (want_bands && voids)
-    throw BadInput("bands of a model whose grid has cells without data: make them from the grid itself");
   context.report("contour", 0);
   OuterRoots outer;
   Trace trace = trace_terrain(terrain, edges, per_unit, fixed_levels, raw_tolerance(options), outer, context);
   RawLines lines = raw_lines(trace, std::move(levels), options, 1 / per_unit, extras);
   if (!want_bands) trace = {};
   if (options.simplify) simplify_lines(lines, terrain, edges, per_unit, fixed_levels, context);
-  if (want_bands)
-    extras->bands =
-        build_bands(lines.set, lines.ends, terrain_border(terrain, edges, per_unit, fixed_levels, outer, trace));
-  if (voids) clip_to_cells(lines.set, terrain.grid);
+  std::vector<DirectedBorder> outline;
+  if (want_bands) {
+    outline = terrain_border(terrain, edges, per_unit, fixed_levels, outer, trace);
+    extras->bands = build_bands(lines.set, lines.ends, outline);
+  }
+  if (voids) {
+    const std::vector<LineCut> cuts =
+        clip_to_cells(lines.set, lines.ends, static_cast<std::uint32_t>(trace.points.size()), terrain.grid);
+    if (want_bands) {
+      const BandLocator whole(extras->bands);  // of the whole triangulation
+      extras->bands = build_bands(lines.set, lines.ends, void_border(terrain, outline, trace, cuts, context), &whole);
+    }
+    drop_points(lines.set);
+  }
   context.report("contour", 1);
   return std::move(lines.set);
 }

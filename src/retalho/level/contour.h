@@ -49,7 +49,7 @@ ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const 
                           const Context& context = {}, ContourExtras* extras = nullptr);
 
 /// The same on the surface of a terrain model, linear, Powell-Sabin or Clough-Tocher. Where the model's grid has cells
-/// without data the lines end on the border of those cells; bands of such a model are refused (BadInput).
+/// without data, lines and bands end on the border of those cells.
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
                           const Context& context = {}, ContourExtras* extras = nullptr);
 
