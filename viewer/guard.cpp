@@ -32,6 +32,26 @@ std::string make_token() {
   return token;
 }
 
+std::string Secrets::token() {
+  const std::lock_guard lock(mutex_);
+  tokens_.push_back(make_token());
+  if (tokens_.size() > kMostTokens) tokens_.pop_front();
+  return tokens_.back();
+}
+
+bool Secrets::has_token(const std::string& token) const {
+  const std::lock_guard lock(mutex_);
+  bool found = false;
+  for (const std::string& one : tokens_) found |= same_secret(one, token);
+  return found;
+}
+
+std::optional<std::string> Secrets::exchange(const std::string& token) {
+  const std::lock_guard lock(mutex_);
+  if (std::erase_if(tokens_, [&](const std::string& one) { return same_secret(one, token); }) == 0) return std::nullopt;
+  return session_;
+}
+
 bool same_secret(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -61,12 +81,15 @@ std::optional<Reply> refuse(const Guard& guard, const Request& request) {
     if (request.method != "GET" && request.method != "HEAD") return no(405, "the page is read with GET");
     return std::nullopt;
   }
-  if (!guard.is_call(request.path)) return no(404, "there is no such address here");
+  const bool exchange = request.path == kExchangePath;
+  if (!exchange && !guard.is_call(request.path)) return no(404, "there is no such address here");
   if (request.method != "POST") return no(405, "calls are made with POST");
   const std::string site = header(request, "sec-fetch-site");
   if (!site.empty() && site != "same-origin") return no(403, "the request comes from another site");
-  if (!same_secret(header(request, "x-retalho-token"), guard.token))
-    return no(403, "the token is missing or wrong: use the address that `retalho view` printed");
+  if (exchange && !guard.secrets->has_token(header(request, kTokenHeader)))
+    return no(403, "this address has been used already, or is not the one that `retalho view` printed");
+  if (!exchange && !guard.secrets->is_session(header(request, "x-retalho-session")))
+    return no(403, "the session's secret is missing or wrong: use the address that `retalho view` printed");
   if (header(request, "content-type") != "application/json") return no(415, "calls send application/json");
   return std::nullopt;
 }

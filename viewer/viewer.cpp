@@ -32,6 +32,17 @@ Reply page_reply(const PageFile& file) {
   return reply;
 }
 
+Reply exchange_token(Secrets& secrets, const Request& request) {
+  const auto at = request.headers.find(kTokenHeader);
+  const auto session = at == request.headers.end() ? std::nullopt : secrets.exchange(at->second);
+  // Two who ask at the same moment may both have been admitted: one of them comes here first.
+  if (!session) return error_reply(403, "refused", "this address has been used already");
+  Reply reply;
+  reply.type = "application/json";
+  reply.body = std::make_shared<const std::string>(Json{{"session", *session}}.dump());
+  return reply;
+}
+
 /// What every reply says to the browser: nothing from elsewhere, no frames around us, nothing kept.
 const std::vector<std::pair<std::string, std::string>>& safe_headers() {
   static const std::vector<std::pair<std::string, std::string>> headers{
@@ -61,9 +72,14 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
   add_curve_calls(table);
   add_patch_calls(table);
   add_tetraquad_calls(table, inputs);
+  Secrets secrets;
+  // A further tab of the same user: the page asks for an address of its own.
+  table["/api/session/token"] = {Call::Kind::quick, [&secrets](const Json&, const Context&) {
+                                   return Answer{{{"token", secrets.token()}}};
+                                 }};
   Workers workers(std::move(table), threads);
   Guard guard;
-  guard.token = make_token();
+  guard.secrets = &secrets;
   guard.is_page = [](const std::string& path) { return find_page(path) != nullptr; };
   guard.is_call = [&workers](const std::string& path) { return workers.knows(path); };
   // The port is known when the server runs already: what comes before `open` is refused.
@@ -72,8 +88,10 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
   hooks.admit = [&](const Request& request) {
     return open ? refuse(guard, request) : std::optional<Reply>(error_reply(503, "busy", "not ready yet"));
   };
-  hooks.handle = [&workers](std::shared_ptr<Exchange> exchange) {
-    if (const PageFile* file = find_page(exchange->request().path))
+  hooks.handle = [&](std::shared_ptr<Exchange> exchange) {
+    if (exchange->request().path == kExchangePath)
+      exchange->reply(exchange_token(secrets, exchange->request()));
+    else if (const PageFile* file = find_page(exchange->request().path))
       exchange->reply(page_reply(*file));
     else
       workers.submit(std::move(exchange));
@@ -82,7 +100,7 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
   const HttpServer server(std::move(hooks), {});
   guard.port = server.port();
   open = true;
-  ready(fmt::format("http://127.0.0.1:{}/#token={}", guard.port, guard.token));
+  ready(fmt::format("http://127.0.0.1:{}/#token={}", guard.port, secrets.token()));
   while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 

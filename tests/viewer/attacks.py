@@ -3,7 +3,7 @@
 
   tests/viewer/attacks.py PROGRAM [--no-memory-limit]     (a sanitizer takes more memory than the limit)
 
-After each attack the page must still answer and a call with the token must still work; at the end the program must be
+After each attack the page must still answer and a call of the session must still work; at the end the program must be
 alive, its largest memory under 100 MB, and it must end by SIGINT with code 0. The exit code is 1 if anything failed.
 """
 import http.client
@@ -42,6 +42,10 @@ class Server:
         self.port = int(address.split(":")[2].split("/")[0])
         self.token = address.split("#token=")[1]
         self.host = f"127.0.0.1:{self.port}"
+        status, words, _ = self.exchange(self.token)
+        if status != 200:
+            sys.exit(f"attacks: the exchange of the token answered {status}: {words!r}")
+        self.session = json.loads(words)["session"]
 
     def connect(self, timeout=5):
         return socket.create_connection(("127.0.0.1", self.port), timeout)
@@ -61,13 +65,13 @@ class Server:
                 return 0
         return int(answer.split()[1]) if answer.startswith(b"HTTP/1.") else 0
 
-    def request(self, method, path, headers=None, body=None, token=True, host=None, timeout=30):
+    def request(self, method, path, headers=None, body=None, session=True, host=None, timeout=30):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
         sent = {"Host": host or self.host, **(headers or {})}
         if method == "POST":
             sent.setdefault("Content-Type", "application/json")
-        if token:
-            sent.setdefault("X-Retalho-Token", self.token)
+        if session:
+            sent.setdefault("X-Retalho-Session", self.session)
         try:
             connection.request(method, path, body=body, headers=sent)
             response = connection.getresponse()
@@ -77,6 +81,9 @@ class Server:
 
     def call(self, path, body, **more):
         return self.request("POST", path, body=body if isinstance(body, (bytes, str)) else json.dumps(body), **more)
+
+    def exchange(self, token, **headers):
+        return self.request("POST", "/api/session", body="{}", session=False, headers={"X-Retalho-Token": token, **headers})
 
     def fit(self, **more):
         words = {"file": 0, "surface": "linear", "fit": "interpolate", "vertices": 50, "triangles": 5000, **more}
@@ -89,7 +96,7 @@ class Server:
     def answers(self):
         """The page and a call, each within five seconds."""
         begun = time.monotonic()
-        page, _, headers = self.request("GET", "/", token=False, timeout=5)
+        page, _, headers = self.request("GET", "/", session=False, timeout=5)
         call, words, _ = self.call("/api/terrain/files", {}, timeout=5)
         if page != 200 or call != 200 or b"Example" not in words:
             return f"the page answers {page}, a call {call}"
@@ -105,7 +112,7 @@ def refused(status, *codes):
 
 
 def get(server, path):
-    return server.raw(f"GET {path} HTTP/1.1\r\nHost: {server.host}\r\nX-Retalho-Token: {server.token}\r\n\r\n".encode())
+    return server.raw(f"GET {path} HTTP/1.1\r\nHost: {server.host}\r\nX-Retalho-Session: {server.session}\r\n\r\n".encode())
 
 
 @attack("a path that climbs out: /../../etc/passwd")
@@ -156,7 +163,7 @@ def _(s):
         s.raw(f"GET / HTTP/1.1\r\nHost: {s.host}\r\nHost: evil.example\r\n\r\n".encode()), 400, 421, 0)
 
 
-@attack("a POST from another site, with the token")
+@attack("a POST from another site, with the secret")
 def _(s):
     return refused(s.call("/api/terrain/files", {}, headers={"Origin": "https://evil.example"})[0], 403)
 
@@ -174,23 +181,67 @@ def _(s):
 
 @attack("a form of another site (a simple request: no preflight)")
 def _(s):
-    return refused(s.call("/api/terrain/files", "a=b", token=False,
+    return refused(s.call("/api/terrain/files", "a=b", session=False,
                           headers={"Content-Type": "text/plain"})[0], 403) or refused(
         s.call("/api/terrain/files", "{}", headers={"Content-Type": "text/plain"})[0], 415)
 
 
-@attack("no token, a wrong one, a longer one")
+@attack("no session, a wrong one, a longer one, and the address's token instead of it")
 def _(s):
-    for token in ("", "A" * 32, s.token + "A", s.token[:-1]):
-        status = s.call("/api/terrain/files", {}, token=False, headers={"X-Retalho-Token": token})[0]
+    for secret in ("", "A" * 32, s.session + "A", s.session[:-1], s.token):
+        status = s.call("/api/terrain/files", {}, session=False, headers={"X-Retalho-Session": secret})[0]
         if status != 403:
-            return f"token {token!r}: answered {status}"
-    return refused(s.call("/api/terrain/files", {}, token=False)[0], 403)
+            return f"secret {secret!r}: answered {status}"
+    return refused(s.call("/api/terrain/files", {}, session=False)[0], 403)
 
 
-@attack("the token in the address instead of the header")
+@attack("the secret in the address instead of the header")
 def _(s):
-    return refused(s.call(f"/api/terrain/files?token={s.token}", {}, token=False)[0], 403)
+    return refused(s.call(f"/api/terrain/files?session={s.session}", {}, session=False)[0], 403)
+
+
+@attack("the printed address used a second time, and tokens that were never printed")
+def _(s):
+    for token in (s.token, s.session, "", "A" * 32, s.token * 100):
+        status, words, _ = s.exchange(token)
+        if status != 403 or s.session.encode() in words:
+            return f"token {token[:40]!r}: answered {status}"
+    return None
+
+
+def new_token(s):
+    return json.loads(s.call("/api/session/token", {})[1])["token"]
+
+
+@attack("a new tab's token asked for without the session, or exchanged from another site")
+def _(s):
+    problem = refused(s.call("/api/session/token", {}, session=False)[0], 403)
+    token = new_token(s)
+    for name, value in (("Origin", "https://evil.example"), ("Sec-Fetch-Site", "cross-site"), ("Host", "evil.example"),
+                        ("Content-Type", "text/plain")):
+        status, words, _ = s.exchange(token, **{name: value})
+        if status not in (403, 415, 421) or s.session.encode() in words:
+            return f"{name} {value}: answered {status}"
+    return problem or refused(s.exchange(token)[0], 200) or refused(s.exchange(token)[0], 403)
+
+
+@attack("40 who exchange one token at the same moment: one gets in")
+def _(s):
+    token, codes = new_token(s), []
+    threads = [threading.Thread(target=lambda: codes.append(s.exchange(token)[0])) for _ in range(40)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    return None if sorted(codes) == [200] + [403] * 39 else f"answered {sorted(codes)}"
+
+
+@attack("a thousand tabs that never come: the oldest tokens are dropped")
+def _(s):
+    first = new_token(s)
+    for _ in range(1000):
+        last = new_token(s)
+    return refused(s.exchange(first)[0], 403) or refused(s.exchange(last)[0], 200)
 
 
 @attack("other methods: PUT, DELETE, TRACE, CONNECT, OPTIONS, and one of 8,000 letters")
@@ -207,7 +258,7 @@ def _(s):
 
 @attack("a body that claims 10 GB, and a length that is no number")
 def _(s):
-    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\n"
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Session: {s.session}\r\nContent-Type: application/json\r\n"
     return refused(s.raw((head + "Content-Length: 10000000000\r\n\r\n{").encode()), 413, 400, 0) or refused(
         s.raw((head + "Content-Length: -5\r\n\r\n").encode()), 400, 413, 0) or refused(
         s.raw((head + "Content-Length: 99999999999999999999999\r\n\r\n").encode()), 400, 413, 0)
@@ -223,7 +274,7 @@ def _(s):
 
 @attack("a body of 200 MB in chunks")
 def _(s):
-    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Session: {s.session}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
     chunk = b"10000\r\n" + b" " * 65536 + b"\r\n"
     with s.connect() as c:
         try:
@@ -237,7 +288,7 @@ def _(s):
 
 @attack("chunks of broken sizes")
 def _(s):
-    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Session: {s.session}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
     for size in ("zz", "-1", "ffffffffffffffffffff", "7fffffffffffffff"):
         status = s.raw((head + size + "\r\n{}\r\n0\r\n\r\n").encode(), timeout=12)
         if status not in (0, 400, 413):
@@ -248,7 +299,7 @@ def _(s):
 @attack("both a length and chunks (request smuggling)")
 def _(s):
     body = f"0\r\n\r\nGET / HTTP/1.1\r\nHost: {s.host}\r\n\r\n"
-    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\nContent-Length: {len(body)}\r\n\r\n"
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Session: {s.session}\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\nContent-Length: {len(body)}\r\n\r\n"
     return refused(s.raw((head + body).encode()), 200, 400, 0)
 
 
@@ -304,9 +355,9 @@ def _(s):
             c.close()
 
 
-@attack("a slow body with the token is cut off")
+@attack("a slow body with the secret is cut off")
 def _(s):
-    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n"
+    head = f"POST /api/terrain/files HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Session: {s.session}\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n"
     with s.connect(30) as c:
         c.sendall(head.encode())
         begun = time.monotonic()
@@ -436,7 +487,7 @@ def _(s):
     words = json.dumps({"file": 0, "surface": "clough-tocher", "fit": "surface", "vertices": 20000,
                         "triangles": 100000}).encode()
     c = s.connect()
-    c.sendall(f"POST /api/terrain/fit HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Token: {s.token}\r\nContent-Type: "
+    c.sendall(f"POST /api/terrain/fit HTTP/1.1\r\nHost: {s.host}\r\nX-Retalho-Session: {s.session}\r\nContent-Type: "
               f"application/json\r\nContent-Length: {len(words)}\r\n\r\n".encode() + words)
     c.recv(100)  # the first progress: it is in work
     c.close()

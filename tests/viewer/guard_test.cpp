@@ -9,7 +9,8 @@ namespace retalho::viewer {
 namespace {
 
 Guard sample_guard() {
-  return {4321, "secret", [](const std::string& p) { return p == "/"; },
+  static const Secrets secrets("secret", "token");
+  return {4321, &secrets, [](const std::string& p) { return p == "/"; },
           [](const std::string& p) { return p == "/api/x"; }};
 }
 
@@ -18,7 +19,7 @@ Request good_call() {
           "/api/x",
           {{"host", "127.0.0.1:4321"},
            {"origin", "http://127.0.0.1:4321"},
-           {"x-retalho-token", "secret"},
+           {"x-retalho-session", "secret"},
            {"content-type", "application/json"}},
           "{}"};
 }
@@ -52,7 +53,8 @@ TEST(Guard, RefusesEachHeaderThatIsWrong) {
                              "http://127.0.0.1:4321.evil.example"})
     EXPECT_EQ(with("origin", origin), 403) << origin;
   for (const char* site : {"cross-site", "same-site", "none"}) EXPECT_EQ(with("sec-fetch-site", site), 403) << site;
-  for (const char* token : {"", "Secret", "secre", "secret1"}) EXPECT_EQ(with("x-retalho-token", token), 403) << token;
+  for (const char* secret : {"", "Secret", "secre", "secret1", "token"})
+    EXPECT_EQ(with("x-retalho-session", secret), 403) << secret;
   for (const char* type : {"", "text/plain", "multipart/form-data"}) EXPECT_EQ(with("content-type", type), 415) << type;
 }
 
@@ -66,9 +68,43 @@ TEST(Guard, KnowsItsAddressesAlone) {
   request.method = "GET";
   EXPECT_EQ(status_of(request), 405);
   request = {"GET", "/", {{"host", "127.0.0.1:4321"}}, ""};
-  EXPECT_EQ(status_of(request), 200);  // the page has no secret: no token
+  EXPECT_EQ(status_of(request), 200);  // the page has no secret: none is asked for
   request.method = "POST";
   EXPECT_EQ(status_of(request), 405);
+}
+
+TEST(Guard, TheExchangeNeedsATokenAndNoSession) {
+  Request request = good_call();
+  request.path = kExchangePath;
+  request.headers.erase("x-retalho-session");
+  EXPECT_EQ(status_of(request), 403);
+  request.headers[kTokenHeader] = "token";
+  EXPECT_EQ(status_of(request), 200);
+  for (const char* token : {"", "Token", "toke", "token1", "secret"}) {
+    request.headers[kTokenHeader] = token;
+    EXPECT_EQ(status_of(request), 403) << token;
+  }
+  request.headers[kTokenHeader] = "token";
+  request.headers["origin"] = "http://evil.example";
+  EXPECT_EQ(status_of(request), 403);
+  request.headers.erase("origin");
+  request.method = "GET";
+  EXPECT_EQ(status_of(request), 405);
+}
+
+TEST(Guard, ATokenIsGoodOnce) {
+  Secrets secrets("secret", "first");
+  EXPECT_FALSE(secrets.exchange("other"));
+  EXPECT_TRUE(secrets.has_token("first"));
+  EXPECT_EQ(secrets.exchange("first"), "secret");
+  EXPECT_FALSE(secrets.has_token("first"));
+  EXPECT_FALSE(secrets.exchange("first"));
+  const std::string second = secrets.token();
+  EXPECT_TRUE(secrets.has_token(second));
+  for (std::size_t k = 0; k < Secrets::kMostTokens; ++k) secrets.token();
+  EXPECT_FALSE(secrets.has_token(second)) << "the oldest is dropped";
+  EXPECT_FALSE(secrets.is_session("first"));
+  EXPECT_TRUE(secrets.is_session("secret"));
 }
 
 TEST(Guard, TokensAreLongAndNeverTheSame) {

@@ -45,10 +45,12 @@ async function drag() {
   const {server, address} = await serve([]);
   const {origin, hash} = new URL(address);
   const document = JSON.parse(readFileSync(fileURLToPath(new URL('../../../examples/patches/saddle.json', import.meta.url)), 'utf8'));
+  const json = {'Content-Type': 'application/json'};
+  const {session} = await (await fetch(origin + '/api/session', {method: 'POST', headers: {...json, 'X-Retalho-Token': hash.slice('#token='.length)}, body: '{}'})).json();
   const times = [];
   for (let k = 0; k < 210; ++k) {
     document.patches[0].sides[0].points[1][2] = 0.55 + 0.3 * Math.sin(k / 20);
-    const response = await fetch(origin + '/api/patches/compute', {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Retalho-Token': hash.slice('#token='.length)},
+    const response = await fetch(origin + '/api/patches/compute', {method: 'POST', headers: {...json, 'X-Retalho-Session': session},
       body: JSON.stringify({document, divisions: 64, recovery: 'smooth', colour: 'none', dragging: true})});
     const bytes = Buffer.from(await response.arrayBuffer());
     const header = JSON.parse(bytes.subarray(8, 8 + bytes.readUInt32LE(4)).toString());

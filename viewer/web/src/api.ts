@@ -18,28 +18,48 @@ export class CallError extends Error {
 
 export type Progress = (stage: string, fraction: number) => void;
 
-const KEY = 'retalho-token';
-let token = '';
+const KEY = 'retalho-session';
+let session = '';
 
-/** Takes the token out of the address (so that it is in no bookmark) and keeps it for this tab alone. */
-export function takeToken(): boolean {
-  const match = /(?:^#|&)token=([\w-]+)/.exec(location.hash);
-  if (match) {
-    token = match[1];
-    sessionStorage.setItem(KEY, token);
-    const rest = location.hash.replace(/(^#|&)token=[\w-]+/, '$1').replace(/^#&?/, '');
-    history.replaceState(null, '', rest ? '#' + rest : location.pathname);
-  } else {
-    token = sessionStorage.getItem(KEY) ?? '';
-  }
-  return token !== '';
+/** The one-time token that an address's fragment holds, and the fragment without it. */
+export function splitToken(fragment: string): {token: string; rest: string} {
+  const token = /(?:^#|&)token=([\w-]+)/.exec(fragment)?.[1] ?? '';
+  const rest = fragment.replace(/^#/, '').split('&').filter((part) => part !== '' && !part.startsWith('token=')).join('&');
+  return {token, rest};
 }
 
-async function send(path: string, input: Words, signal?: AbortSignal): Promise<Response> {
+/**
+ * Exchanges the address's token for the session's secret, once, and takes it out of the address (so that it is in no
+ * bookmark). The secret stays with this tab: a reload finds it, and so does a duplicate of the tab. Throws CallError.
+ */
+export async function openSession(): Promise<void> {
+  session = sessionStorage.getItem(KEY) ?? '';
+  const {token, rest} = splitToken(location.hash);
+  if (token === '') {
+    if (session === '') throw new CallError('refused', 'This address lacks its token. Use the whole address that `retalho view` printed, or "New tab" in a tab that is open already');
+    return;
+  }
+  history.replaceState(null, '', rest ? '#' + rest : location.pathname);
+  const response = await post('/api/session', {}, {'X-Retalho-Token': token});
+  const words = (await response.json()) as Words;
+  if (response.ok) {
+    session = String(words.session);
+    sessionStorage.setItem(KEY, session);
+  } else if (session === '') {  // with one, this tab is where the token was used before: it goes on
+    throw new CallError('refused', 'This address has been used already: it opens the page once. Go on in the tab that it opened, where "New tab" opens another. If that was not you, end the program with Ctrl-C and run `retalho view` again');
+  }
+}
+
+/** The address of a further tab, good once. */
+export async function newTabAddress(): Promise<string> {
+  return `/#token=${String((await ask('/api/session/token')).words.token)}`;
+}
+
+async function post(path: string, input: Words, headers: Record<string, string>, signal?: AbortSignal): Promise<Response> {
   try {
     return await fetch(path, {
       method: 'POST',
-      headers: {'Content-Type': 'application/json', 'X-Retalho-Token': token},
+      headers: {'Content-Type': 'application/json', ...headers},
       body: JSON.stringify(input),
       signal,
       cache: 'no-store',
@@ -48,6 +68,10 @@ async function send(path: string, input: Words, signal?: AbortSignal): Promise<R
     if (signal?.aborted) throw error;
     throw new CallError('connection', 'the program does not answer: it has ended, or was stopped. Run `retalho view` again');
   }
+}
+
+function send(path: string, input: Words, signal?: AbortSignal): Promise<Response> {
+  return post(path, input, {'X-Retalho-Session': session}, signal);
 }
 
 function errorOf(words: Words): CallError {

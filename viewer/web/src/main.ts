@@ -1,5 +1,5 @@
 // The page: its frame, its state, and which view is shown.
-import {ask, CallError, takeToken} from './api';
+import {ask, CallError, newTabAddress, openSession} from './api';
 import {firstCurves, PRESETS} from './curves/state';
 import {CurvesView} from './curves/view';
 import {download, make} from './dom';
@@ -34,10 +34,10 @@ function linkedState(first: PageState): PageState {
 }
 
 async function start(): Promise<void> {
-  if (!takeToken()) return fail('This address lacks its token. Use the whole address that `retalho view` printed.');
   page.replaceChildren(make('main', {class: 'failure'}, make('p', {}, 'Asking the program what it has opened …')));
   let files: FileInfo[], tetraFiles: TetraFile[], clouds: TetraFile[], given: boolean;
   try {
+    await openSession();
     const {words} = await ask('/api/terrain/files');
     files = words.files as FileInfo[];
     given = words.given as boolean;
@@ -103,6 +103,13 @@ async function start(): Promise<void> {
     if (blob) download(`${view}.png`, blob);
   }}, 'Save picture');
   const save = make('button', {type: 'button', title: 'What is shown, as a file that Open view reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
+  const tab = make('button', {type: 'button', title: 'The page once more, beside this one', click: async () => {
+    try {
+      open(await newTabAddress(), '_blank', 'noopener');
+    } catch (error) {
+      note(error instanceof Error ? error.message : String(error));
+    }
+  }}, 'New tab');
   const input: HTMLInputElement = make('input', {type: 'file', class: 'open-view', accept: '.json', hidden: true, change: async () => {
     const file = input.files?.[0];
     if (!file) return;
@@ -115,8 +122,8 @@ async function start(): Promise<void> {
     }
     input.value = '';
   }});
-  const open = make('button', {type: 'button', click: () => input.click()}, 'Open view');
-  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, status, cancel, link, save, open, input, picture, theme);
+  const openView = make('button', {type: 'button', click: () => input.click()}, 'Open view');
+  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, status, cancel, tab, link, save, openView, input, picture, theme);
   const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element, tetraquads.element);
   page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage, tetraquads.stage));
 

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {splitEvents, unpack} from '../src/api';
+import {splitEvents, splitToken, unpack} from '../src/api';
 import {addPoint, clipped, clippedPath, firstCurves, growable, PRESETS, removePoint} from '../src/curves/state';
 import {say} from '../src/dom';
 import {History} from '../src/history';
@@ -19,6 +19,13 @@ test('events are split, and what is incomplete waits', () => {
     assert.deepEqual([...first.events, ...second.events], [['progress', '{"a":1}'], ['done', '{"b":2}']]);
     assert.equal(second.rest, '');
   }
+});
+
+test('the token is taken out of the fragment, and what else stands there stays', () => {
+  assert.deepEqual(splitToken('#token=aB-_9'), {token: 'aB-_9', rest: ''});
+  assert.deepEqual(splitToken('#view=xyz&token=abc'), {token: 'abc', rest: 'view=xyz'});
+  assert.deepEqual(splitToken('#view=xyz'), {token: '', rest: 'view=xyz'});
+  assert.deepEqual(splitToken(''), {token: '', rest: ''});
 });
 
 test('binary answers: arrays start at multiples of 8, whatever the header is long', () => {
