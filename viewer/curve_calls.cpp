@@ -27,10 +27,7 @@ CurveDocument document_of(const Json& input) {
   const auto at = input.find("document");
   if (at == input.end()) throw BadInput("the call lacks 'document'", {}, "document");
   CurveDocument document = parse_curves(at->dump());
-  std::size_t points = 0;
-  for (const CurveSpec& spec : document.curves) points += spec.points.size();
-  if (document.curves.size() > kMostCurves || points > kMostPoints)
-    throw BadInput(fmt::format("the page shows at most {} curves of {} points together", kMostCurves, kMostPoints));
+  check_size(document);
   return document;
 }
 
@@ -222,7 +219,20 @@ Answer change_call(const Json& input, const Context&) {
 
 }  // namespace
 
-void add_curve_calls(CallTable& table) {
+void check_size(const CurveDocument& document) {
+  std::size_t points = 0;
+  for (const CurveSpec& spec : document.curves) points += spec.points.size();
+  if (document.curves.size() > kMostCurves || points > kMostPoints)
+    throw BadInput(fmt::format("the page shows at most {} curves of {} points together", kMostCurves, kMostPoints));
+}
+
+void add_curve_calls(CallTable& table, const InputFiles& inputs) {
+  Json files = Json::array();
+  for (const CurvesInput& one : inputs.curves)
+    files.push_back({{"name", one.name}, {"described", one.described}, {"document", one.document}});
+  table["/api/curves/files"] = {Call::Kind::quick, [files](const Json&, const Context&) {
+                                  return Answer{{{"files", files}}};
+                                }};
   table["/api/curves/compute"] = {Call::Kind::quick, compute_call};
   table["/api/curves/change"] = {Call::Kind::quick, change_call};
 }

@@ -6,11 +6,18 @@
 #include <cmath>
 #include <filesystem>
 
+#include "curve_calls.h"
+#include "patch_calls.h"
 #include "retalho/cloud/normals.h"
+#include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
+#include "retalho/curve/document.h"
+#include "retalho/curve/expression.h"
 #include "retalho/model/model.h"
+#include "retalho/patch/document.h"
 #include "retalho/raster/io.h"
 #include "retalho/tetraquad/document.h"
+#include "tetraquad_calls.h"
 
 namespace retalho::viewer {
 namespace {
@@ -37,7 +44,11 @@ Raster example_grid() {
   return raster;
 }
 
-void add_tetraquad(InputFiles& inputs, const std::string& name, TetraQuad surface) {
+void add_tetraquad(InputFiles& inputs, const std::string& path, const std::string& name, TetraQuad surface) {
+  if (surface.mesh.tets.size() > kMostTets)
+    throw BadInput(fmt::format("'{}' has {} tetrahedra, more than the page draws ({}): draw it with `retalho render`",
+                               path, surface.mesh.tets.size(), kMostTets),
+                   path);
   std::string words =
       fmt::format("TetraQuad, {} vertices, {} tetrahedra", surface.mesh.lattice.size(), surface.mesh.tets.size());
   inputs.tetraquads.push_back({name, std::move(words), std::make_shared<const TetraQuad>(std::move(surface))});
@@ -72,14 +83,96 @@ void read_model(InputFiles& inputs, const std::string& path, const std::string& 
                                     terrain->tin.vertex_count(), terrain->tin.triangle_count());
     inputs.terrains.push_back({name, std::move(words), nullptr, std::make_shared<const Terrain>(std::move(*terrain))});
   } else if (auto* surface = std::get_if<TetraQuad>(&model)) {
-    add_tetraquad(inputs, name, std::move(*surface));
+    add_tetraquad(inputs, path, name, std::move(*surface));
   } else {
-    throw BadInput(
-        fmt::format("'{}' holds triangular patches, which the page makes from curves: save the curves as JSON and open "
-                    "them in the page, or draw the model with `retalho render`",
-                    path),
+    auto& set = std::get<PatchSet>(model);
+    std::size_t triangles = 0;
+    for (const Patch& patch : set.patches) triangles += patch.domain.triangles.size();
+    if (triangles > kMostPatchTriangles)
+      throw BadInput(fmt::format("'{}' has {} triangles, more than the page draws ({}): draw it with `retalho render`",
+                                 path, triangles, kMostPatchTriangles),
+                     path);
+    inputs.patches.push_back({name, fmt::format("model of {} patches, {} triangles", set.patches.size(), triangles),
+                              nullptr, std::make_shared<const PatchSet>(std::move(set))});
+  }
+}
+
+/// The text as JSON. Throws CannotRead with line and column.
+Json parse_json(const std::string& text, const std::string& path) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::string_view before = std::string_view(text).substr(0, error.byte > 0 ? error.byte - 1 : 0);
+    const std::size_t start = before.rfind('\n');
+    throw CannotRead(
+        fmt::format("'{}' is not JSON (line {}, column {})", path, 1 + std::count(before.begin(), before.end(), '\n'),
+                    start == std::string_view::npos ? before.size() + 1 : before.size() - start),
         path);
   }
+}
+
+/// What is wrong is said with the file's name.
+template <class Check>
+void in_file(const std::string& path, Check&& check) {
+  try {
+    check();
+  } catch (const BadInput& error) {
+    throw BadInput(error.what(), path, error.where());
+  }
+}
+
+void add_curves(InputFiles& inputs, const std::string& path, const std::string& name, const std::string& text,
+                Json json) {
+  const CurveDocument document = parse_curves(text, path);
+  in_file(path, [&] {
+    check_size(document);
+    for (std::size_t i = 0; i < document.curves.size(); ++i) {
+      const CurveSpec& spec = document.curves[i];
+      if (spec.kind == CurveKind::implicit_form || spec.kind == CurveKind::explicit_form)
+        Expression::parse(spec.f);
+      else
+        to_curve(spec, fmt::format("curves[{}]", i));
+    }
+  });
+  inputs.curves.push_back({name, fmt::format("{} curves", document.curves.size()), std::move(json)});
+}
+
+void add_patches(InputFiles& inputs, const std::string& path, const std::string& name, const std::string& text,
+                 Json json) {
+  const std::vector<PatchSpec> specs = parse_patches(text, path);
+  in_file(path, [&] {
+    for (const PatchSpec& spec : specs) join_sides(spec.sides, {}, spec.where);
+  });
+  if (specs.size() > kMostPatches)
+    throw BadInput(fmt::format("'{}' has {} patches, more than the page shows ({})", path, specs.size(), kMostPatches),
+                   path);
+  inputs.patches.push_back({name, fmt::format("{} patches by their curves", specs.size()), std::move(json), nullptr});
+}
+
+void read_json(InputFiles& inputs, const std::string& path, const std::string& name) {
+  const std::string text = read_file(path);
+  Json json = parse_json(text, path);
+  if (json.is_object() && json.contains("patches"))
+    add_patches(inputs, path, name, text, std::move(json));
+  else if (json.is_object() && json.contains("tetrahedra"))
+    add_tetraquad(inputs, path, name, parse_quadrics(text, path));
+  else if (json.is_object() && json.contains("curves"))
+    add_curves(inputs, path, name, text, std::move(json));
+  else if (json.is_object() && json.contains("tiles"))
+    throw BadInput(fmt::format("'{}' is the index of a tiled model: give its folder", path), path);
+  else
+    throw BadInput(fmt::format("'{}' is JSON of a kind that the page does not show: it shows patches, curves and "
+                               "quadrics, by the keys \"patches\", \"curves\" and \"tetrahedra\"",
+                               path),
+                   path);
+}
+
+/// The view of the one file that has been read.
+std::string view_of_first(const InputFiles& inputs) {
+  return !inputs.terrains.empty()  ? "terrain"
+         : !inputs.curves.empty()  ? "curves"
+         : !inputs.patches.empty() ? "patches"
+                                   : "tetraquads";
 }
 
 }  // namespace
@@ -91,11 +184,12 @@ InputFiles read_inputs(const std::vector<std::string>& paths, const Context& con
     if (is_model_file(path))
       read_model(inputs, path, name);
     else if (std::filesystem::path(path).extension() == ".json")
-      add_tetraquad(inputs, name, read_quadrics(path));
+      read_json(inputs, path, name);
     else if (is_point_file(path))
       add_cloud(inputs, path, name, context);
     else
       inputs.terrains.push_back(read_grid(path, name, context));
+    if (inputs.first_view == "start") inputs.first_view = view_of_first(inputs);
   }
   if (inputs.terrains.empty()) {
     inputs.terrains_given = false;

@@ -10,6 +10,7 @@
 
 #include "calls.h"
 #include "retalho/cloud/cloud.h"
+#include "retalho/patch/patch.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/terrain.h"
 #include "retalho/tetraquad/tetraquad.h"
@@ -36,15 +37,33 @@ struct CloudInput {
   std::shared_ptr<const PointCloud> cloud;
 };
 
+/// A document of curves (docs/curves.md), as it was written.
+struct CurvesInput {
+  std::string name, described;
+  Json document;
+};
+
+/// Triangular patches: a document of curves and sides (docs/triangular-patches.md), as it was written, or the patches
+/// of a model file.
+struct PatchInput {
+  std::string name, described;
+  Json document;                          ///< null for a model
+  std::shared_ptr<const PatchSet> model;  ///< null for a document
+};
+
 struct InputFiles {
   std::vector<TerrainInput> terrains;
   bool terrains_given = true;  ///< false: the only terrain is the example
   std::vector<TetraQuadInput> tetraquads;
   std::vector<CloudInput> clouds;
+  std::vector<CurvesInput> curves;
+  std::vector<PatchInput> patches;
+  std::string first_view = "start";  ///< where the first file is shown: "terrain", "curves", "patches", "tetraquads"
 };
 
-/// Reads `paths`; with none, the terrain is an example made by formula. Throws as the readers do, and BadInput for a
-/// file of a kind that the page cannot show.
+/// Reads `paths`; with no terrain among them there is an example made by formula. What a JSON file is, its keys say:
+/// "patches", "tetrahedra", "curves". Throws as the readers do, and BadInput for a file of a kind that the page cannot
+/// show, or that is larger than it can draw.
 InputFiles read_inputs(const std::vector<std::string>& paths, const Context& context);
 
 }  // namespace retalho::viewer

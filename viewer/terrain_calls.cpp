@@ -13,6 +13,7 @@
 #include "retalho/model/model.h"
 #include "retalho/terrain/quantities.h"
 #include "retalho/visibility/viewshed.h"
+#include "saved_file.h"
 
 namespace retalho::viewer {
 namespace {
@@ -118,7 +119,7 @@ TriangleMesh drawn_mesh(const Terrain& terrain, HeightRange range, std::size_t b
   }
 }
 
-Answer files_call(const Models& models) {
+Answer files_call(const Models& models, const std::string& first_view) {
   Json list = Json::array();
   for (std::size_t i = 0; i < models.inputs().size(); ++i) {
     const TerrainInput& input = models.inputs()[i];
@@ -142,7 +143,7 @@ Answer files_call(const Models& models) {
     }
     list.push_back(one);
   }
-  return {{{"files", list}, {"given", models.given()}}};
+  return {{{"files", list}, {"given", models.given()}, {"first_view", first_view}}};
 }
 
 /// Fits, and gives the surface as triangles: as fine as the page's budget of triangles lets it be.
@@ -329,10 +330,13 @@ Answer profile_call(const Models& models, const Json& input) {
           {make_array("distance", distance), make_array("surface", surface), make_array("grid", grid)}};
 }
 
-/// The model file's bytes, as `retalho fit` writes them.
-Answer model_call(const Models& models, const Json& input) {
-  const std::string bytes = encode_model(*models.get(input)->terrain);
-  return {{{"bytes", bytes.size()}}, {make_array("file", std::vector<std::uint8_t>(bytes.begin(), bytes.end()))}};
+/// The model file's bytes, as `retalho fit` writes them; or triangles, as `retalho mesh` makes them of it when it is
+/// given no tolerance.
+Answer save_call(const Models& models, const Json& input, const Context& context) {
+  const std::string format = save_format(input);
+  const ModelPointer model = models.get(input);
+  if (format == "retalho") return saved_model(encode_model(*model->terrain));
+  return saved_mesh(mesh_terrain(*model->terrain, {}, context), format);
 }
 
 Answer viewshed_call(Models& models, const Json& input, const Context& context) {
@@ -375,7 +379,9 @@ Answer viewshed_call(Models& models, const Json& input, const Context& context) 
 void add_terrain_calls(CallTable& table, const InputFiles& inputs) {
   const auto models = std::make_shared<Models>(inputs);
   using Kind = Call::Kind;
-  table["/api/terrain/files"] = {Kind::quick, [models](const Json&, const Context&) { return files_call(*models); }};
+  table["/api/terrain/files"] = {Kind::quick, [models, first = inputs.first_view](const Json&, const Context&) {
+                                   return files_call(*models, first);
+                                 }};
   table["/api/terrain/fit"] = {
       Kind::slow, [models](const Json& in, const Context& context) { return fit_call(*models, in, context); }};
   table["/api/terrain/errors"] = {
@@ -385,8 +391,8 @@ void add_terrain_calls(CallTable& table, const InputFiles& inputs) {
   table["/api/terrain/at"] = {Kind::quick, [models](const Json& in, const Context&) { return at_call(*models, in); }};
   table["/api/terrain/profile"] = {Kind::quick,
                                    [models](const Json& in, const Context&) { return profile_call(*models, in); }};
-  table["/api/terrain/model"] = {Kind::quick,
-                                 [models](const Json& in, const Context&) { return model_call(*models, in); }};
+  table["/api/terrain/save"] = {
+      Kind::slow, [models](const Json& in, const Context& context) { return save_call(*models, in, context); }};
   table["/api/terrain/viewshed"] = {
       Kind::slow, [models](const Json& in, const Context& context) { return viewshed_call(*models, in, context); }};
 }

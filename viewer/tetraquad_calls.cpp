@@ -10,15 +10,16 @@
 #include <mutex>
 
 #include "retalho/core/error.h"
+#include "retalho/mesh/tetraquad_mesh.h"
+#include "retalho/model/model.h"
 #include "retalho/tetraquad/document.h"
 #include "retalho/tetraquad/fit.h"
 #include "retalho/tetraquad/rays.h"
 #include "retalho/tetraquad/tetraquad.h"
+#include "saved_file.h"
 
 namespace retalho::viewer {
 namespace {
-
-constexpr std::size_t kMostTets = 400'000;
 
 /// A surface with its ray caster. The page's coordinates are steps of the grid from the middle of the box.
 struct Loaded {
@@ -185,6 +186,14 @@ Answer ray_call(Surfaces& surfaces, const Json& input, const Context& context) {
            {"tet", hit->tet}}};
 }
 
+/// Triangles as `retalho mesh` makes them when it is given no tolerance; or the model file.
+Answer save_call(Surfaces& surfaces, const Json& input, const Context& context) {
+  const std::string format = save_format(input);
+  const LoadedPointer loaded = surfaces.load(input, context);
+  if (format == "retalho") return saved_model(encode_model(*loaded->surface));
+  return saved_mesh(mesh_tetraquad(*loaded->field, {}, nullptr, context), format);
+}
+
 }  // namespace
 
 void add_tetraquad_calls(CallTable& table, const InputFiles& inputs) {
@@ -211,6 +220,9 @@ void add_tetraquad_calls(CallTable& table, const InputFiles& inputs) {
                                           }};
   table["/api/tetraquads/load"] = {Call::Kind::quick, [surfaces](const Json& input, const Context& context) {
                                      return load_call(*surfaces, input, context);
+                                   }};
+  table["/api/tetraquads/save"] = {Call::Kind::slow, [surfaces](const Json& input, const Context& context) {
+                                     return save_call(*surfaces, input, context);
                                    }};
   table["/api/tetraquads/ray"] = {Call::Kind::quick, [surfaces](const Json& input, const Context& context) {
                                     return ray_call(*surfaces, input, context);

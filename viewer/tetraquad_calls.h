@@ -7,6 +7,8 @@
 
 namespace retalho::viewer {
 
+inline constexpr std::size_t kMostTets = 400'000;  ///< the page draws
+
 /// Adds /api/tetraquads/... to `table`.
 void add_tetraquad_calls(CallTable& table, const InputFiles& inputs);
 

@@ -69,8 +69,8 @@ void serve(const InputFiles& inputs, int threads, const std::atomic<bool>& stop,
                 "this program was built without the page: install nodejs and npm, run scripts/setup, and try again");
   CallTable table;
   add_terrain_calls(table, inputs);
-  add_curve_calls(table);
-  add_patch_calls(table);
+  add_curve_calls(table, inputs);
+  add_patch_calls(table, inputs);
   add_tetraquad_calls(table, inputs);
   Secrets secrets;
   // A further tab of the same user: the page asks for an address of its own.

@@ -21,6 +21,8 @@ void run(const Program& program, const Options& options) {
   for (const viewer::TerrainInput& one : inputs.terrains) program.say(fmt::format("{}: {}", one.name, one.described));
   for (const viewer::TetraQuadInput& one : inputs.tetraquads)
     program.say(fmt::format("{}: {}", one.name, one.described));
+  for (const viewer::CurvesInput& one : inputs.curves) program.say(fmt::format("{}: {}", one.name, one.described));
+  for (const viewer::PatchInput& one : inputs.patches) program.say(fmt::format("{}: {}", one.name, one.described));
   for (const viewer::CloudInput& one : inputs.clouds) program.say(fmt::format("{}: {}", one.name, one.described));
   program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
   BrowserDoor door;
@@ -43,11 +45,11 @@ void add_view(CLI::App& root, Program& program) {
   CLI::App* command = add_command(root, program, "view", "The page, in the browser, on this machine only",
                                   "retalho view dem.tif\n"
                                   "retalho view dem.tif model.retalho\n"
-                                  "retalho view bunny.retalho\n"
+                                  "retalho view bunny.retalho hull.json curves.json\n"
                                   "retalho view --no-browser dem.tif");
   command
       ->add_option("FILE", options->files,
-                   "Elevation grids, models of terrains and TetraQuads, quadrics as JSON, clouds (none: examples)")
+                   "Elevation grids, models of every kind (tiled: the folder), points; curves, patches and quadrics as JSON")
       ->type_name("");
   command->add_flag("--no-browser", options->no_browser, "Print the address on standard output and open nothing");
   command->callback([options, &program] { run(program, *options); });

@@ -88,6 +88,17 @@ TEST_F(MeshFormat, PlyAndObjGiveBackEveryDigit) {
     }
 }
 
+TEST_F(MeshFormat, EncodedBytesAreTheFiles) {
+  TriangleMesh mesh = test::wavy_sheet();
+  for (const char* ending : {".ply", ".obj", ".stl", ".glb", ".xml"}) {
+    write_mesh(mesh, name("m") + ending);
+    EXPECT_EQ(encode_mesh(mesh, ending), read_file(name("m") + ending)) << ending;
+  }
+  EXPECT_THROW(encode_mesh(mesh, ".fbx"), UsageError);
+  mesh.triangles[3][1] = 35;
+  EXPECT_THROW(encode_mesh(mesh, ".glb"), BadInput);
+}
+
 TEST_F(MeshFormat, PlyIsLaidOutAsItsHeaderSays) {
   const TriangleMesh mesh = test::wavy_sheet();
   write_mesh(mesh, name("m.ply"));

@@ -19,6 +19,8 @@ ByteSink::ByteSink(const std::string& path, std::string name)
   block_ = new char[kBlock];
 }
 
+ByteSink::ByteSink(std::string& into) : into_(&into), block_(new char[kBlock]) {}
+
 ByteSink::~ByteSink() {
   if (file_) std::fclose(file_);
   delete[] block_;
@@ -29,7 +31,10 @@ void ByteSink::fail() {
 }
 
 void ByteSink::flush() {
-  if (used_ != 0 && std::fwrite(block_, 1, used_, file_) != used_) fail();
+  if (into_)
+    into_->append(block_, used_);
+  else if (used_ != 0 && std::fwrite(block_, 1, used_, file_) != used_)
+    fail();
   used_ = 0;
 }
 
@@ -55,6 +60,7 @@ void ByteSink::number(std::uint64_t value) {
 
 void ByteSink::close() {
   flush();
+  if (into_) return;
   std::FILE* const file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail();

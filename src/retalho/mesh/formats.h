@@ -11,11 +11,13 @@
 
 namespace retalho {
 
-/// A file being written front to back, in large blocks. Throws CannotWrite when the disk is full.
+/// A file, or a text in memory, being written front to back, in large blocks. Throws CannotWrite when the disk is full.
 class ByteSink {
  public:
   /// `path` is written; errors speak of `name`.
   ByteSink(const std::string& path, std::string name);
+  /// The bytes go to the end of `into`, which is whole after close().
+  explicit ByteSink(std::string& into);
   ~ByteSink();
   ByteSink(const ByteSink&) = delete;
   ByteSink& operator=(const ByteSink&) = delete;
@@ -36,7 +38,8 @@ class ByteSink {
   [[noreturn]] void fail();
   static constexpr std::size_t kBlock = std::size_t{1} << 18;
   std::string name_;
-  std::FILE* file_;
+  std::FILE* file_ = nullptr;
+  std::string* into_ = nullptr;
   char* block_;
   std::size_t used_ = 0;
 };

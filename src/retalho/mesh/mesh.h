@@ -45,6 +45,9 @@ MeshCheck check_mesh(const TriangleMesh& mesh);
 /// indices, positions not finite).
 void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite = false);
 
+/// The bytes that write_mesh gives a file of this extension (".glb"). Throws as write_mesh does.
+std::string encode_mesh(const TriangleMesh& mesh, const std::string& extension);
+
 /// Is the extension one that write_mesh knows?
 bool is_mesh_name(const std::string& path);
 

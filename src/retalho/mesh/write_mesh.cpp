@@ -33,6 +33,14 @@ const Format* find_format(const std::string& path) {
   return found == std::end(kFormats) ? nullptr : found;
 }
 
+const Format& format_of(const std::string& path) {
+  if (const Format* const format = find_format(path)) return *format;
+  throw UsageError(
+      fmt::format(
+          "'{}' does not end in .ply, .obj, .stl, .glb, .xml or .landxml: the name tells the format of the mesh", path),
+      path);
+}
+
 void check_arrays(const TriangleMesh& mesh, const std::string& path) {
   const std::size_t n = mesh.positions.size();
   if (!mesh.normals.empty() && mesh.normals.size() != n)
@@ -54,19 +62,24 @@ bool is_mesh_name(const std::string& path) {
 }
 
 void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite) {
-  const Format* const format = find_format(path);
-  if (!format)
-    throw UsageError(
-        fmt::format(
-            "'{}' does not end in .ply, .obj, .stl, .glb, .xml or .landxml: the name tells the format of the mesh",
-            path),
-        path);
+  const Format& format = format_of(path);
   check_arrays(mesh, path);
   AtomicFile file(path, overwrite);
   ByteSink out(file.temporary(), path);
-  format->write(mesh, out);
+  format.write(mesh, out);
   out.close();
   file.commit();
+}
+
+std::string encode_mesh(const TriangleMesh& mesh, const std::string& extension) {
+  const std::string name = "mesh" + extension;
+  const Format& format = format_of(name);
+  check_arrays(mesh, name);
+  std::string bytes;
+  ByteSink out(bytes);
+  format.write(mesh, out);
+  out.close();
+  return bytes;
 }
 
 TriangleMesh read_mesh(const std::string& path) {

@@ -45,6 +45,17 @@ export function writeHills(path, columns, rows) {
   writeFileSync(path, text);
 }
 
+/** Points with normals on an ellipsoid of half axes 1.4, 1 and 0.8, along a spiral. */
+export function writeEgg(path, count) {
+  let text = 'x,y,z,nx,ny,nz\n';
+  for (let k = 0; k < count; ++k) {
+    const z = 1 - (2 * k + 1) / count, r = Math.sqrt(1 - z * z), a = k * 2.399963;
+    const [x, y] = [r * Math.cos(a), r * Math.sin(a)];
+    text += [1.4 * x, y, 0.8 * z, x / 1.4, y, z / 0.8].map((v) => v.toFixed(7)).join(',') + '\n';
+  }
+  writeFileSync(path, text);
+}
+
 export class View {
   static async open(args) {
     const view = new View();

@@ -52,10 +52,19 @@ export const tests = [
     near(shown['slope RMSE'], report.slope_rmse, 5e-3, 'slope RMSE');
     await view.picture('terrain-relief');
     const saving = page.waitForEvent('download');
-    await page.getByRole('button', {name: 'Save model'}).click();
+    await page.locator('.controls:not([hidden])').getByRole('button', {name: 'Save model'}).click();
     const file = join(folder, 'saved.retalho');
     await (await saving).saveAs(file);
     assert.deepEqual(readFileSync(file), readFileSync(model), 'the saved model is the program’s, byte for byte');
+    for (const format of ['obj', 'glb']) {
+      const downloading = page.waitForEvent('download'), mesh = join(folder, `program.${format}`);
+      await page.locator('.controls:not([hidden])').getByRole('button', {name: `Save ${format.toUpperCase()}`}).click();
+      const download = await downloading;
+      assert.equal(download.suggestedFilename(), `hills.${format}`);
+      await download.saveAs(join(folder, `page.${format}`));
+      retalho('mesh', model, '-o', mesh);
+      assert.deepEqual(readFileSync(join(folder, `page.${format}`)), readFileSync(mesh), `the ${format} is the program’s, byte for byte`);
+    }
     await page.locator('.controls:not([hidden])').getByLabel('Colour').selectOption('error');
     await view.quiet();
     const top = await page.$eval('.legend .ticks span:last-child', (span) => parseFloat(span.textContent));

@@ -1,10 +1,10 @@
 // The TetraQuad view: the shader's hits against the program's ray caster, and its edits against `retalho reconstruct`.
 import assert from 'node:assert/strict';
-import {mkdtempSync, rmSync, writeFileSync} from 'node:fs';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
-import {listed, retalho, View, withPage} from './support.mjs';
+import {listed, retalho, View, withPage, writeEgg} from './support.mjs';
 
 const LIMIT = 1e-3;  // of a cell
 
@@ -78,6 +78,13 @@ export const tests = [
     await (await saving).saveAs(file);
     const answer = retalho('reconstruct', file, '-o', join(folder, 'model.retalho'));
     assert.equal(answer.tetrahedra, 1);
+    for (const format of ['retalho', 'obj', 'glb']) {
+      const downloading = page.waitForEvent('download'), made = join(folder, `program.${format}`);
+      await bar.getByRole('button', {name: format === 'retalho' ? 'Save model' : `Save ${format.toUpperCase()}`}).click();
+      await (await downloading).saveAs(join(folder, `page.${format}`));
+      retalho('reconstruct', file, '-o', made);
+      assert.deepEqual(readFileSync(join(folder, `page.${format}`)), readFileSync(made), `the ${format} is the program’s, byte for byte`);
+    }
     const model = await View.open([join(folder, 'model.retalho')]);
     try {
       await model.go();
@@ -93,13 +100,7 @@ export const tests = [
   ['points become a surface, coarse first and then finer, as `retalho reconstruct` makes it', async () => {
     const folder = mkdtempSync(join(tmpdir(), 'retalho-points-'));
     const cloud = join(folder, 'egg.xyz');
-    let text = 'x,y,z,nx,ny,nz\n';
-    for (let k = 0; k < 4000; ++k) {  // a spiral on an ellipsoid
-      const z = 1 - (2 * k + 1) / 4000, r = Math.sqrt(1 - z * z), a = k * 2.399963;
-      const [x, y] = [r * Math.cos(a), r * Math.sin(a)];
-      text += [1.4 * x, y, 0.8 * z, x / 1.4, y, z / 0.8].map((v) => v.toFixed(7)).join(',') + '\n';
-    }
-    writeFileSync(cloud, text);
+    writeEgg(cloud, 4000);
     try {
       await withPage([cloud], 'TetraQuads', async ({view, page, bar}) => {
         await page.locator('input[type=number][aria-label^="Resolution"]').fill('10');

@@ -53,6 +53,10 @@ export function choice(words: string, options: [value: string, text: string][], 
   return {
     element: labelled(words, select),
     show(value: string) { select.value = value; },
+    /** Other words to choose from, where they are others. */
+    options(list: [value: string, text: string][]) {
+      if (JSON.stringify([...select.options].map((option) => [option.value, option.text])) !== JSON.stringify(list)) select.replaceChildren(...list.map(([value, text]) => make('option', {value}, text)));
+    },
     enable(value: string, on: boolean) {
       for (const option of select.options) if (option.value === value) option.disabled = !on;
     },
@@ -104,6 +108,22 @@ export function slider(words: string, unit: string, changed: (value: number) => 
 /** Numbers beside their names. */
 export function table(rows: [name: string, value: string][]): HTMLElement {
   return make('dl', {}, ...rows.flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)]));
+}
+
+/** A drawing as a file of its own: with the colours that the page's style gives. */
+export function svgFile(element: SVGElement): Blob {
+  const copy = element.cloneNode(true) as SVGElement;
+  const from = [element, ...element.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
+  from.forEach((one, k) => {
+    const style = getComputedStyle(one);
+    for (const name of ['fill', 'stroke', 'stroke-width', 'stroke-dasharray', 'font-size', 'font-family', 'opacity']) to[k].setAttribute(name, style.getPropertyValue(name));
+  });
+  for (const hit of copy.querySelectorAll('.hit')) hit.remove();
+  const box = element.getBoundingClientRect();
+  copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
+  copy.setAttribute('width', String(box.width));
+  copy.setAttribute('height', String(box.height));
+  return new Blob([copy.outerHTML], {type: 'image/svg+xml'});
 }
 
 /** Gives the browser a file to save. */

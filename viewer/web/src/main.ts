@@ -1,12 +1,12 @@
 // The page: its frame, its state, and which view is shown.
 import {ask, CallError, newTabAddress, openSession} from './api';
 import {firstCurves, PRESETS} from './curves/state';
-import {CurvesView} from './curves/view';
+import {CurvesView, type CurveFile} from './curves/view';
 import {download, make} from './dom';
 import {History} from './history';
-import {firstPatches, PATCH_PRESETS} from './patches/state';
-import {PatchesView} from './patches/view';
-import {startPage} from './start';
+import {firstPatches, PATCH_PRESETS, readDocument, type PatchesState} from './patches/state';
+import {PatchesView, type PatchFile} from './patches/view';
+import {startPage, type Card} from './start';
 import {decoded, encoded, merged, type PageState, type ViewName} from './state';
 import {Tasks} from './tasks';
 import {firstLook, type FileInfo} from './terrain/state';
@@ -22,12 +22,26 @@ function fail(words: string): void {
   page.replaceChildren(make('main', {class: 'failure', role: 'alert'}, make('h1', {}, 'Retalho'), make('p', {}, words)));
 }
 
+/** A saved state over the first one; documents of patches as they were written by any version. */
+function opened(first: PageState, given: unknown): PageState {
+  const state = merged(first, given);
+  state.patches.document = readDocument(state.patches.document).document;
+  return state;
+}
+
+function firstPatchesOf([file]: PatchFile[]): PatchesState {
+  if (!file) return firstPatches();
+  if (file.document === null) return {...firstPatches(), file: 0};
+  const {document, divisions} = readDocument(file.document);
+  return {...firstPatches(), document, divisions: Math.min(128, divisions ?? 24)};
+}
+
 /** What a link restores: the state in the address's fragment. */
 function linkedState(first: PageState): PageState {
   const match = /^#view=([\w-]+)$/.exec(location.hash);
   if (!match) return first;
   try {
-    return merged(first, decoded(match[1]));
+    return opened(first, decoded(match[1]));
   } catch {
     return first;
   }
@@ -35,21 +49,24 @@ function linkedState(first: PageState): PageState {
 
 async function start(): Promise<void> {
   page.replaceChildren(make('main', {class: 'failure'}, make('p', {}, 'Asking the program what it has opened …')));
-  let files: FileInfo[], tetraFiles: TetraFile[], clouds: TetraFile[], given: boolean;
+  let files: FileInfo[], tetraFiles: TetraFile[], clouds: TetraFile[], curveFiles: CurveFile[], patchFiles: PatchFile[], view: ViewName;
   try {
     await openSession();
     const {words} = await ask('/api/terrain/files');
     files = words.files as FileInfo[];
-    given = words.given as boolean;
+    view = words.first_view as ViewName;
     const tetra = (await ask('/api/tetraquads/files')).words;
     tetraFiles = tetra.files as TetraFile[];
     clouds = tetra.clouds as TetraFile[];
+    curveFiles = (await ask('/api/curves/files')).words.files as CurveFile[];
+    patchFiles = (await ask('/api/patches/files')).words.files as PatchFile[];
   } catch (error) {
     return fail(error instanceof CallError ? `${error.message}.` : String(error));
   }
-  const first: PageState = {theme: 'auto', view: given ? 'terrain' : tetraFiles.length + clouds.length > 0 ? 'tetraquads' : 'start', terrain: firstLook(0, files[0]), curves: firstCurves(), patches: firstPatches(), tetraquads: {...firstTetraQuads(), file: tetraFiles.length > 0 ? 0 : -1, cloud: tetraFiles.length === 0 && clouds.length > 0 ? 0 : -1}};
+  const first: PageState = {theme: 'auto', view, terrain: firstLook(0, files[0]), curves: {...firstCurves(), ...(curveFiles[0] ? {document: curveFiles[0].document} : {})}, patches: firstPatchesOf(patchFiles), tetraquads: {...firstTetraQuads(), file: tetraFiles.length > 0 ? 0 : -1, cloud: tetraFiles.length === 0 && clouds.length > 0 ? 0 : -1}};
   const history = new History<PageState>(linkedState(first));
   if (!files[history.state.terrain.file]) history.change((s) => { s.terrain = first.terrain; }, {silent: true});
+  if (history.state.patches.file >= patchFiles.length) history.change((s) => { s.patches = first.patches; }, {silent: true});
 
   const tasks = new Tasks(() => showStatus());
   let terrain: TerrainView, patches: PatchesView, tetraquads: TetraQuadsView;
@@ -58,17 +75,28 @@ async function start(): Promise<void> {
       (change, group) => history.change((s) => change(s.terrain), {group}), tasks,
       (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
       (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true}));
-    patches = new PatchesView(history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks);
+    patches = new PatchesView(patchFiles, history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks);
     tetraquads = new TetraQuadsView(tetraFiles, clouds, history.state.tetraquads, (change, options) => history.change((s) => change(s.tetraquads), options), tasks);
   } catch {
     return fail('This browser gives no WebGL 2 here, which the pictures need. Another browser, or its hardware acceleration, may help.');
   }
-  const curves = new CurvesView(history.state.curves, (change, options) => history.change((s) => change(s.curves), options), tasks);
-  const starting = startPage(files,
-    (file) => history.change((s) => { s.view = 'terrain'; if (s.terrain.file !== file) s.terrain = firstLook(file, files[file]); }),
-    (preset) => { curves.open(PRESETS[preset][1]); go('curves'); },
-    (preset) => { patches.open(PATCH_PRESETS[preset][1]); go('patches'); },
-    (preset) => { tetraquads.open(TETRA_PRESETS[preset][1]); go('tetraquads'); });
+  const curves = new CurvesView(curveFiles, history.state.curves, (change, options) => history.change((s) => change(s.curves), options), tasks);
+  const count = (n: number, one: string, many: string) => `${n} ${n === 1 ? one : many}`;
+  const cards = (view: ViewName, list: {name: string; described: string}[], open: (k: number) => void) =>
+    list.map(({name, described}, k): Card => ({name, described, open: () => { open(k); go(view); }}));
+  const starting = startPage([
+    {title: 'Terrains', words: 'A grid becomes a surface of polynomial patches: fit it, see its errors, ask it, set surfaces side by side.',
+      cards: cards('terrain', files, (file) => history.change((s) => { if (s.terrain.file !== file) s.terrain = firstLook(file, files[file]); }))},
+    {title: 'Curves', words: 'Draw and drag control points, walk through de Casteljau’s triangle, read the continuity of each join.',
+      cards: [...cards('curves', curveFiles, (k) => curves.openFile(k)),
+        ...cards('curves', PRESETS.map(([name, document]) => ({name, described: [...new Set(document.curves.map((spec) => spec.kind))].join(', ')})), (k) => curves.open(PRESETS[k][1]))]},
+    {title: 'Triangular surfaces', words: 'Three space curves span a surface: drag their points, change its recovery, look at zebra stripes and curvature.',
+      cards: [...cards('patches', patchFiles, (k) => patches.openFile(k)),
+        ...cards('patches', PATCH_PRESETS.map(([name, document]) => ({name, described: `${count(document.patches.length, 'patch', 'patches')}, ${document.curves.length} curves`})), (k) => patches.open(PATCH_PRESETS[k][1]))]},
+    {title: 'TetraQuads', words: 'A quadric at each vertex of tetrahedra, one implicit cubic in each: ray cast from the quadrics themselves.',
+      cards: [...cards('tetraquads', tetraFiles, (k) => tetraquads.openFile('file', k)), ...cards('tetraquads', clouds, (k) => tetraquads.openFile('cloud', k)),
+        ...cards('tetraquads', TETRA_PRESETS.map(([name, document]) => ({name, described: count(document.tetrahedra.length, 'tetrahedron', 'tetrahedra')})), (k) => tetraquads.open(TETRA_PRESETS[k][1]))]},
+  ]);
 
   function go(view: ViewName): void {
     history.change((s) => { s.view = view; }, {silent: true});
@@ -114,18 +142,18 @@ async function start(): Promise<void> {
     const file = input.files?.[0];
     if (!file) return;
     try {
-      const opened = merged(first, JSON.parse(await file.text()));
-      if (!files[opened.terrain.file]) throw new Error(`it shows file ${opened.terrain.file + 1}, which is not open`);
-      history.change((s) => { Object.assign(s, opened); });
+      const state = opened(first, JSON.parse(await file.text()));
+      if (!files[state.terrain.file]) throw new Error(`it shows file ${state.terrain.file + 1}, which is not open`);
+      history.change((s) => { Object.assign(s, state); });
     } catch (error) {
       note(`${file.name} cannot be opened: ${error instanceof Error ? error.message : String(error)}`);
     }
     input.value = '';
   }});
   const openView = make('button', {type: 'button', click: () => input.click()}, 'Open view');
-  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, status, cancel, tab, link, save, openView, input, picture, theme);
+  const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, make('div', {class: 'space'}), picture, link, save, openView, input, tab, theme);
   const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element, tetraquads.element);
-  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage, tetraquads.stage));
+  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage, tetraquads.stage), make('footer', {}, status, cancel));
 
   let noted = '';
   function note(words: string): void {

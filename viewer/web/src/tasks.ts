@@ -42,7 +42,7 @@ export class Tasks {
   }
 
   /** Runs `job` now, whatever was run under this name before. */
-  once(name: string, words: string, job: (signal: AbortSignal) => Promise<void>): void {
+  once(name: string, words: string, job: (signal: AbortSignal, progress: Progress) => Promise<void>): void {
     this.want(name, words, String(++this.count), job);
   }
 

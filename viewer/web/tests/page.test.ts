@@ -4,7 +4,7 @@ import {splitEvents, splitToken, unpack} from '../src/api';
 import {addPoint, clipped, clippedPath, firstCurves, growable, PRESETS, removePoint} from '../src/curves/state';
 import {say} from '../src/dom';
 import {History} from '../src/history';
-import {editable, firstPatches, handles, movePoint, PATCH_PRESETS, robustRange} from '../src/patches/state';
+import {firstPatches, handleName, handles, movePoint, PATCH_PRESETS, pointsOf, readDocument, robustRange, snapped, type PatchDocument} from '../src/patches/state';
 import {rampBytes, rampColour} from '../src/ramps';
 import {decoded, encoded, merged} from '../src/state';
 import {ticks} from '../src/terrain/profile';
@@ -148,30 +148,46 @@ test('a link holds the state, and wrong values in it are left out', () => {
   assert.deepEqual(merged(curves, decoded(encoded(curves))), curves);
 });
 
-test('a corner of a triangular surface belongs to two sides, and moves in both', () => {
-  const {document} = firstPatches();
-  const {sides} = document.patches[0];
-  assert.equal(handles(document).length, sides.reduce((n, side) => n + side.points.length - 1, 0));
-  for (let side = 0; side < 3; ++side) {
-    movePoint(document, side, 0, [7, side, 9]);
-    movePoint(document, side, 1, [1, 2, 3]);
-    assert.deepEqual(sides[side].points[0], [7, side, 9]);
-    assert.deepEqual(sides[(side + 2) % 3].points.at(-1), [7, side, 9]);
+/** The ends of a patch's sides, as they run. */
+function ends(document: PatchDocument, patch: number): [number[], number[]][] {
+  return document.patches[patch].sides.map(({curve, reversed}) => {
+    const points = pointsOf(document.curves[curve]), pair: [number[], number[]] = [points[0], points[points.length - 1]];
+    return reversed ? [pair[1], pair[0]] : pair;
+  });
+}
+
+test('a corner of a triangular surface moves in all of its curves, and the sides stay joined', () => {
+  for (const [name, preset] of PATCH_PRESETS) {
+    const document = structuredClone(preset), all = handles(document);
+    const corners = all.filter(({corner}) => corner).length;
+    assert.equal(corners, {Saddle: 3, 'Octant of a sphere': 3, Blade: 3, Hull: 5}[name], name);
+    const inner = document.curves.reduce((n, curve) => n + pointsOf(curve).length - 2, 0);
+    assert.equal(all.length, corners + inner, name);
+    all.forEach(({handle}, k) => movePoint(document, handle, [k, 2 * k, k * k]));
+    all.forEach(({handle: [curve, index]}, k) => assert.deepEqual(pointsOf(document.curves[curve])[index], [k, 2 * k, k * k]));
+    document.patches.forEach((_, patch) => ends(document, patch).forEach(([, end], k, sides) => assert.deepEqual(end, sides[(k + 1) % 3][0], `${name}, patch ${patch}`)));
   }
-  movePoint(document, 1, sides[1].points.length - 1, [5, 5, 5]);
-  assert.deepEqual(sides[2].points[0], [5, 5, 5]);
-  sides.forEach((side, k) => assert.deepEqual(side.points.at(-1), sides[(k + 1) % 3].points[0]));
 });
 
-test('only patches of three written-out Bézier curves are dragged', () => {
-  assert.deepEqual(PATCH_PRESETS.map(([name]) => name), ['Saddle', 'Octant of a sphere']);
-  assert.equal(editable({patches: [{sides: [1, 2, 3]}]}), null);
-  assert.equal(editable({curves: []}), null);
-  assert.equal(editable(null), null);
-  const side = {kind: 'bezier', points: [[0, 0, 0], [1, 0, 0]]};
-  assert.equal(editable({patches: [{sides: [side, side, {...side, reversed: true}]}]}), null);
-  assert.equal(editable({patches: [{sides: [side, side, {kind: 'bezier', points: [[0, 0]]}]}]}), null);
-  assert.deepEqual(editable({patches: [{sides: [side, side, side]}]})?.patches[0].sides[2], side);
+test('documents of patches are read as the program reads them', () => {
+  assert.deepEqual(PATCH_PRESETS.map(([name, {patches}]) => [name, patches.length]), [['Saddle', 1], ['Octant of a sphere', 1], ['Blade', 2], ['Hull', 4]]);
+  const side = (...points: number[][]) => ({kind: 'bezier', points});
+  const a = [0, 0, 0], b = [1, 0, 0], c = [0, 1, 0], d = [1, 1, 1];
+  // Written out twice, once backwards: one curve, which both patches share.
+  const {document} = readDocument({patches: [{sides: [side(a, b), side(b, c), side(c, a)]}, {name: 'second', sides: [side(c, b), {...side(d, b), reversed: true}, side(d, c)]}]});
+  assert.equal(document.curves.length, 5);
+  assert.deepEqual(document.patches[1], {name: 'second', sides: [{curve: 1, reversed: true}, {curve: 3, reversed: true}, {curve: 4, reversed: false}]});
+  assert.deepEqual(readDocument(document).document, document, 'what the page saves is read back as it is');
+  const three = readDocument({curves: [side(a, b), side(b, c), side(c, a)]});
+  assert.deepEqual(three.document.patches[0].sides.map(({curve}) => curve), [0, 1, 2]);
+  assert.equal(handleName(three.document, [1, 0]), 'Side 2, point 1');
+  assert.equal(readDocument({patches: [{sides: [side(a, b), side(b, c), side(c, a)], divisions: [8, 9, 10]}]}).divisions, 8);
+  for (const [wrong, words] of [[null, /expected/], [{curves: []}, /expected/], [{patches: [{sides: [1, 2]}]}, /patches\[0\].sides: expected three/], [{curves: [side(a, b)], patches: [{sides: ['keel', 0, 0]}]}, /names the curve "keel"/], [{patches: [{sides: [7, 7, 7]}]}, /names the curve 7/]] as const) assert.throws(() => readDocument(wrong), words);
+  assert.deepEqual(pointsOf({kind: 'bezier', points: [[0, 0]] as never}), [], 'points of the plane are not dragged in space');
+  assert.deepEqual(pointsOf({kind: 'power', points: [[0, 0, 0]]}), [], 'coefficients are no places');
+  assert.deepEqual(snapped([0.123, -0.26, 7], 0.1), [0.1, -0.3, 7]);
+  assert.deepEqual(snapped([0.123, -0.26, 7], 0), [0.123, -0.26, 7]);
+  assert.equal(firstPatches().document.patches.length, 1);
 });
 
 test('a legend leaves out the wildest values and keeps 0 in the middle', () => {

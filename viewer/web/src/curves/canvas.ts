@@ -182,19 +182,4 @@ export class CurveCanvas {
   }
 }
 
-/** The drawing as a file of its own: with the colours that the page's style gives. */
-export function asFile(element: SVGElement): Blob {
-  const copy = element.cloneNode(true) as SVGElement;
-  const from = [element, ...element.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
-  from.forEach((one, k) => {
-    const style = getComputedStyle(one);
-    for (const name of ['fill', 'stroke', 'stroke-width', 'stroke-dasharray', 'font-size', 'font-family', 'opacity']) to[k].setAttribute(name, style.getPropertyValue(name));
-  });
-  for (const hit of copy.querySelectorAll('.hit')) hit.remove();
-  copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
-  copy.setAttribute('width', String(element.clientWidth));
-  copy.setAttribute('height', String(element.clientHeight));
-  return new Blob([copy.outerHTML], {type: 'image/svg+xml'});
-}
-
 export const emptyWords = (): HTMLElement => make('p', {class: 'hint'}, 'No curve: choose a preset, or draw one.');

@@ -1,10 +1,16 @@
 // The curve view: a document of curves, drawn and changed by hand; every number and every line is the program's.
 import {ask} from '../api';
-import {choice, download, make, say, slider, table, toggle} from '../dom';
+import {choice, download, make, say, slider, svgFile, table, toggle} from '../dom';
 import {jsonInput} from '../opening';
 import type {Tasks} from '../tasks';
-import {asFile, CurveCanvas, emptyWords} from './canvas';
+import {CurveCanvas, emptyWords} from './canvas';
 import {addPoint, boxOf, chosen, growable, moveTo, NEW_KINDS, PRESETS, removePoint, rounded, snapped, type CurveDocument, type CurvesState, type Drawn} from './state';
+
+export interface CurveFile {
+  name: string;
+  described: string;
+  document: CurveDocument;
+}
 
 export type Edit = (change: (state: CurvesState) => void, options?: {group?: string; silent?: boolean}) => void;
 
@@ -28,7 +34,7 @@ export class CurvesView {
   private box: number[] = [-1, -1, 1, 1];
   private framedFor = '';
 
-  constructor(first: CurvesState, private edit: Edit, private tasks: Tasks) {
+  constructor(private files: CurveFile[], first: CurvesState, private edit: Edit, private tasks: Tasks) {
     this.state = first;
     this.canvas = new CurveCanvas({
       drag: (index, [x, y], tangent) => this.edit((s) => {
@@ -48,8 +54,10 @@ export class CurvesView {
     this.stage.append(this.canvas.element);
     new ResizeObserver(() => this.draw()).observe(this.stage);
 
-    this.preset = choice('Example', [['', 'choose …'], ...PRESETS.map(([name], k): [string, string] => [String(k), name])], (v) => {
-      if (v !== '') this.open(PRESETS[Number(v)][1]);
+    this.preset = choice('Example', [['', 'choose …'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...PRESETS.map(([name], k): [string, string] => [`preset ${k}`, name])], (v) => {
+      const [kind, k] = v.split(' ');
+      if (kind === 'file') this.openFile(Number(k));
+      if (kind === 'preset') this.open(PRESETS[Number(k)][1]);
     });
     this.kind = choice('New curve', [['', 'choose a kind …'], ...NEW_KINDS, ['implicit', 'implicit: f(x, y) = 0'], ['explicit', 'explicit: y = f(x)']], (v) => this.add(v));
     this.t = slider('t', '', (v) => this.edit((s) => { s.t = v; }, {group: 't'}));
@@ -84,7 +92,7 @@ export class CurvesView {
       make('div', {class: 'row wrap'},
         button('Save curves', 'The JSON that `retalho curve` reads', () => download('curves.json', new Blob([JSON.stringify(this.state.document, null, 1)], {type: 'application/json'}))),
         button('Open curves', 'The JSON that `retalho curve` reads', () => input.click()), input,
-        button('Save SVG', 'The drawing', () => download('curves.svg', asFile(this.canvas.element))),
+        button('Save SVG', 'The drawing', () => download('curves.svg', svgFile(this.canvas.element))),
         button('Whole drawing', 'Shows everything', () => this.edit((s) => { s.window = null; }, {silent: true}))));
     this.stage.addEventListener('keydown', (event) => {
       if (event.key !== 'Delete' && event.key !== 'Backspace') return;
@@ -94,6 +102,10 @@ export class CurvesView {
 
   open(document: CurveDocument): void {
     this.edit((s) => { s.document = structuredClone(document); s.selected = 0; s.point = -1; s.window = null; });
+  }
+
+  openFile(k: number): void {
+    this.open(this.files[k].document);
   }
 
   private add(kind: string): void {

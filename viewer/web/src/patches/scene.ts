@@ -1,9 +1,10 @@
 // The picture of a triangular surface: the surface, its three curves, their control points to drag, the cursor.
 import {BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Plane, Raycaster, ShaderMaterial, SphereGeometry, Vector2, Vector3, WireframeGeometry} from 'three';
 import type {Answer} from '../api';
+import {make, say} from '../dom';
 import {Stage} from '../stage';
 import {rampTexture} from '../terrain/shaders';
-import {handles, type PatchesState, type Style, type Vec3} from './state';
+import {handleName, handles, pointsOf, type Handle, type PatchesState, type Style, type Vec3} from './state';
 
 const VERTEX = `
 in vec2 parameters;
@@ -62,9 +63,10 @@ void main() {
 const STYLES: Style[] = ['light', 'lines', 'zebra', 'isophotes', 'error', 'gaussian', 'mean'];
 
 export interface PatchSceneEvents {
-  drag(side: number, index: number, to: Vec3): void;
+  drag(handle: Handle, to: Vec3): void;
   dropped(): void;
-  hover(uv: [number, number] | null): void;
+  focused(handle: Handle): void;
+  hover(patch: number, uv: [number, number] | null): void;
   cameraMoved(camera: number[]): void;
 }
 
@@ -76,20 +78,30 @@ export class PatchScene extends Stage {
   private readonly wires = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x1c2329, transparent: true, opacity: 0.4}));
   private readonly sides = [0x2a8ac4, 0xd5700a, 0x0a9e76].map((color) => new Line(new BufferGeometry(), new LineBasicMaterial({color, linewidth: 2})));
   private readonly polygons = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x808890}));
+  private readonly others = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x5b666e}));
   private readonly dots = new Group();
+  /** One button a point, where it lies in the picture: for the keyboard. The mouse goes through to the canvas. */
+  private readonly buttons = make('div', {class: 'handles', role: 'group', 'aria-label': 'Control points. Arrow keys move in the plane of the screen, Page Up and Page Down away and nearer, X, Y and Z along the axes (with Shift backwards); Shift with an arrow is ten steps.'});
+  private handles: Handle[] = [];
+  private firstTriangles: number[] = [0];
+  private size = 1;
+  private step = 0;
   private readonly cursor = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffb000}));
-  private held: {side: number; index: number; plane: Plane} | null = null;
+  private held: {handle: Handle; plane: Plane} | null = null;
 
   constructor(element: HTMLElement, private events: PatchSceneEvents) {
     super(element, 'The surface. Drag a point to move it; drag elsewhere to turn, right drag moves, the wheel zooms.', true, (camera) => events.cameraMoved(camera));
     this.cursor.visible = false;
-    for (const object of [this.surface, this.wires, this.polygons, ...this.sides]) object.frustumCulled = false;
-    this.scene.add(this.surface, this.wires, this.polygons, this.dots, this.cursor, ...this.sides);
+    for (const object of [this.surface, this.wires, this.polygons, this.others, ...this.sides]) object.frustumCulled = false;
+    this.scene.add(this.surface, this.wires, this.polygons, this.others, this.dots, this.cursor, ...this.sides);
+    element.append(this.buttons);
     this.canvas.addEventListener('pointerdown', (event) => this.down(event), {capture: true});
     this.canvas.addEventListener('pointermove', (event) => this.moved(event));
     this.canvas.addEventListener('pointerup', () => this.up());
     this.canvas.addEventListener('pointercancel', () => this.up());
-    this.canvas.addEventListener('pointerleave', () => events.hover(null));
+    this.canvas.addEventListener('pointerleave', () => events.hover(-1, null));
+    this.buttons.addEventListener('keydown', (event) => this.key(event));
+    this.buttons.addEventListener('keyup', () => events.dropped());
   }
 
   frame(centre: Vec3, size: number): void {
@@ -103,7 +115,7 @@ export class PatchScene extends Stage {
     this.redraw();
   }
 
-  takeSurface({arrays}: Answer, recovery: string): void {
+  takeSurface({words, arrays}: Answer): void {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(arrays.position, 3));
     geometry.setAttribute('normal', new BufferAttribute(arrays.normal, 3));
@@ -112,16 +124,30 @@ export class PatchScene extends Stage {
     geometry.setIndex(new BufferAttribute(arrays.index, 1));
     this.surface.geometry.dispose();
     this.surface.geometry = geometry;
-    this.material.uniforms.flatFaces.value = recovery === 'barycentric';
+    this.material.uniforms.flatFaces.value = words.flat as boolean;
+    this.firstTriangles = words.first_triangles as number[];
     this.wires.geometry.dispose();
     this.wires.geometry = this.wires.visible ? new WireframeGeometry(geometry) : new BufferGeometry();
-    const sides = arrays.sides as Float32Array, each = sides.length / 3;
-    this.sides.forEach((line, k) => {
-      line.geometry.dispose();
-      line.geometry = new BufferGeometry();
-      line.geometry.setAttribute('position', new BufferAttribute(sides.slice(k * each, (k + 1) * each), 3));
-    });
+    this.sidePoints = arrays.sides as Float32Array;
     this.redraw();
+  }
+  private sidePoints = new Float32Array();
+
+  /** The sides of one patch in the colours of the parameter triangle, those of the others in grey. */
+  private showSides(patch: number): void {
+    const each = 65 * 3, rest: number[] = [];
+    for (let k = 0; k * each < this.sidePoints.length; ++k) {
+      const points = this.sidePoints.slice(k * each, (k + 1) * each);
+      if (Math.floor(k / 3) === patch) this.put(this.sides[k % 3], points);
+      else for (let i = 0; i + 3 < each; i += 3) rest.push(...points.subarray(i, i + 6));
+    }
+    this.put(this.others, new Float32Array(rest));
+  }
+
+  private put(object: {geometry: BufferGeometry}, points: Float32Array): void {
+    object.geometry.dispose();
+    object.geometry = new BufferGeometry();
+    if (points.length > 0) object.geometry.setAttribute('position', new BufferAttribute(points, 3));
   }
 
   show(state: PatchesState, size: number, range: [number, number]): void {
@@ -131,22 +157,34 @@ export class PatchScene extends Stage {
     const wires = state.mesh && !this.wires.visible;
     this.wires.visible = state.mesh;
     if (wires && this.surface.geometry.getAttribute('position')) this.wires.geometry = new WireframeGeometry(this.surface.geometry);
-    this.polygons.visible = this.dots.visible = state.polygons;
-    const lines: number[] = [];
-    for (const side of state.document.patches[0].sides) for (let i = 0; i + 1 < side.points.length; ++i) lines.push(...side.points[i], ...side.points[i + 1]);
-    this.polygons.geometry.dispose();
-    this.polygons.geometry = new BufferGeometry();
-    this.polygons.geometry.setAttribute('position', new BufferAttribute(new Float32Array(lines), 3));
-    const wanted = handles(state.document);
+    this.size = size;
+    this.step = state.snap;
+    this.showSides(state.patch);
+    const held = state.polygons && state.file < 0;
+    this.polygons.visible = this.dots.visible = held;
+    this.buttons.hidden = !held;
+    const lines: number[] = [], wanted = handles(state.document);
+    for (const curve of new Set(wanted.map(({handle}) => handle[0]))) {
+      const points = pointsOf(state.document.curves[curve]);
+      for (let i = 0; i + 1 < points.length; ++i) lines.push(...points[i], ...points[i + 1]);
+    }
+    this.put(this.polygons, new Float32Array(lines));
+    this.handles = wanted.map(({handle}) => handle);
+    while (this.buttons.children.length > wanted.length) this.buttons.lastChild?.remove();
+    while (this.buttons.children.length < wanted.length) {
+      const k = this.buttons.children.length;
+      this.buttons.append(make('button', {type: 'button', focus: () => this.events.focused(this.handles[k])}));
+    }
     while (this.dots.children.length > wanted.length) this.dots.remove(this.dots.children[this.dots.children.length - 1]);
     while (this.dots.children.length < wanted.length) this.dots.add(new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffffff})));
-    wanted.forEach(([side, index], k) => {
-      const dot = this.dots.children[k] as Mesh;
-      const chosen = state.point !== null && state.point[0] === side && state.point[1] === index;
-      (dot.material as MeshBasicMaterial).color = new Color(chosen ? 0xffb000 : index === 0 ? 0x1c2329 : 0x6b7780);
-      dot.position.set(...state.document.patches[0].sides[side].points[index]);
-      dot.scale.setScalar(size * (index === 0 ? 0.014 : 0.011));
-      dot.userData = {side, index};
+    wanted.forEach(({handle, corner}, k) => {
+      const dot = this.dots.children[k] as Mesh, [curve, index] = handle, at = pointsOf(state.document.curves[curve])[index];
+      const chosen = state.point !== null && state.point[0] === curve && state.point[1] === index;
+      (dot.material as MeshBasicMaterial).color = new Color(chosen ? 0xffb000 : corner ? 0x1c2329 : 0x6b7780);
+      dot.position.set(...at);
+      dot.scale.setScalar(size * (corner ? 0.014 : 0.011));
+      dot.userData = {handle};
+      this.buttons.children[k].setAttribute('aria-label', `${handleName(state.document, handle)}: ${at.map((v) => say(v, 5)).join(', ')}`);
     });
     this.redraw();
   }
@@ -171,7 +209,13 @@ export class PatchScene extends Stage {
   protected draw(): void {
     if (!this.render(Math.min(2, devicePixelRatio))) return;
     // Where the points lie in the picture: for whoever cannot see it, and for tests.
-    this.canvas.dataset.handles = JSON.stringify((this.dots.children as Mesh[]).map((dot) => this.toScreen(dot.position.toArray() as Vec3).map(Math.round)));
+    const box = this.canvas.getBoundingClientRect(), places = (this.dots.children as Mesh[]).map((dot) => this.toScreen(dot.position.toArray() as Vec3));
+    this.canvas.dataset.handles = JSON.stringify(places.map((place) => place.map(Math.round)));
+    places.forEach(([x, y], k) => {
+      const {style} = this.buttons.children[k] as HTMLElement;
+      style.left = `${x - box.left}px`;
+      style.top = `${y - box.top}px`;
+    });
   }
 
   private aim(event: PointerEvent): void {
@@ -182,37 +226,55 @@ export class PatchScene extends Stage {
   private down(event: PointerEvent): void {
     if (event.button !== 0 || !this.dots.visible) return;
     this.aim(event);
-    // A finger or a mouse that is a little beside the point means it all the same: the nearest within 14 pixels.
-    let best: Mesh | null = null, nearest = 14;
+    // A finger or a mouse that is a little beside the point means it all the same: the nearest within some pixels.
+    let best: Mesh | null = null, nearest = event.pointerType === 'touch' ? 24 : 14;
     for (const dot of this.dots.children as Mesh[]) {
       const [x, y] = this.toScreen(dot.position.toArray() as Vec3), d = Math.hypot(x - event.clientX, y - event.clientY);
       if (d < nearest) { nearest = d; best = dot; }
     }
     if (!best) return;
     event.stopImmediatePropagation();
-    const {side, index} = best.userData as {side: number; index: number};
+    const {handle} = best.userData as {handle: Handle};
     this.canvas.setPointerCapture(event.pointerId);
-    this.held = {side, index, plane: new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), best.position)};
+    this.held = {handle, plane: new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), best.position)};
     this.controls.enabled = false;
-    this.events.drag(side, index, best.position.toArray() as Vec3);
+    this.events.drag(handle, best.position.toArray() as Vec3);
   }
 
   private moved(event: PointerEvent): void {
     this.aim(event);
     if (this.held) {
       const at = this.raycaster.ray.intersectPlane(this.held.plane, new Vector3());
-      if (at) this.events.drag(this.held.side, this.held.index, at.toArray().map((v) => Number(v.toPrecision(7))) as Vec3);
+      if (at) this.events.drag(this.held.handle, at.toArray().map((v) => Number(v.toPrecision(7))) as Vec3);
       return;
     }
     if (event.buttons !== 0 || !this.surface.geometry.getAttribute('position')) return;
     const hit = this.raycaster.intersectObject(this.surface, false)[0];
-    if (!hit?.face) return this.events.hover(null);
+    if (!hit?.face) return this.events.hover(-1, null);
+    const triangle = hit.faceIndex ?? 0, patch = this.firstTriangles.filter((first) => first <= triangle).length - 1;
     const parameters = this.surface.geometry.getAttribute('parameters'), positions = this.surface.geometry.getAttribute('position');
     const {a, b, c} = hit.face, [pa, pb, pc] = [a, b, c].map((i) => new Vector3().fromBufferAttribute(positions as BufferAttribute, i));
     const area = (p: Vector3, q: Vector3, r: Vector3) => q.clone().sub(p).cross(r.clone().sub(p)).length();
     const whole = area(pa, pb, pc) || 1, weights = [area(hit.point, pb, pc) / whole, area(pa, hit.point, pc) / whole, area(pa, pb, hit.point) / whole];
     const at = (get: (i: number) => number) => weights[0] * get(a) + weights[1] * get(b) + weights[2] * get(c);
-    this.events.hover([at((i) => parameters.getX(i)), at((i) => parameters.getY(i))]);
+    this.events.hover(patch, [at((i) => parameters.getX(i)), at((i) => parameters.getY(i))]);
+  }
+
+  private key(event: KeyboardEvent): void {
+    const k = [...this.buttons.children].indexOf(event.target as Element), handle = this.handles[k];
+    if (!handle || event.ctrlKey || event.metaKey || event.altKey) return;
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), up = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1), away = this.camera.getWorldDirection(new Vector3());
+    const back = event.shiftKey ? -1 : 1;
+    const ways: Record<string, Vector3> = {ArrowRight: right, ArrowLeft: right.clone().negate(), ArrowUp: up, ArrowDown: up.clone().negate(), PageUp: away, PageDown: away.clone().negate(),
+      x: new Vector3(back, 0, 0), y: new Vector3(0, back, 0), z: new Vector3(0, 0, back)};
+    const way = ways[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!way) return;
+    event.preventDefault();
+    const far = event.key.startsWith('Arrow') && event.shiftKey ? 10 : 1;
+    // With a snap, a step that is shorter along each axis than half of it would lead nowhere.
+    const longest = Math.max(...way.toArray().map(Math.abs)), step = this.step > 0 ? this.step / longest : this.size / 200;
+    const to = (this.dots.children[k] as Mesh).position.clone().addScaledVector(way, step * far);
+    this.events.drag(handle, to.toArray().map((v) => Number(v.toPrecision(7))) as Vec3);
   }
 
   private up(): void {

@@ -1,13 +1,20 @@
 // The triangular-surface view: three space curves, the surface between them, and the parameter triangle beside it.
 import {ask, type Answer} from '../api';
-import {choice, download, make, say, slider, svg, table, toggle} from '../dom';
+import {choice, download, make, say, slider, svg, svgFile, table, toggle} from '../dom';
 import {legend} from '../ramps';
 import {jsonInput} from '../opening';
+import {saveButtons, saveFile, type SavedFormat} from '../saving';
 import type {Tasks} from '../tasks';
 import {PatchScene} from './scene';
-import {boundsOf, editable, movePoint, PATCH_PRESETS, robustRange, type PatchDocument, type PatchesState, type Recovery, type Style, type Vec3} from './state';
+import {boundsOf, boundsOfPoints, handleName, movePoint, PATCH_PRESETS, pointsOf, readDocument, robustRange, snapped, type PatchDocument, type PatchesState, type Recovery, type Style, type Vec3} from './state';
 
 export type Edit = (change: (state: PatchesState) => void, options?: {group?: string; silent?: boolean}) => void;
+
+export interface PatchFile {
+  name: string;
+  described: string;
+  document: unknown;  // null: a model, which is looked at and not changed
+}
 
 const TRIANGLE = {u: [20, 180], v: [220, 180], w: [120, 12]};  // the corners U, V, W in the drawing
 
@@ -15,7 +22,12 @@ export class PatchesView {
   readonly stage = make('div', {class: 'patch-stage'});
   readonly element: HTMLElement;
   readonly scene: PatchScene;
-  private readonly preset;
+  private readonly source;
+  private readonly patch;
+  private readonly snap;
+  private readonly said = make('div', {class: 'unseen', 'aria-live': 'polite'});
+  private readonly makes: HTMLElement;
+  private readonly pointPlace: HTMLElement;
   private readonly divisions;
   private readonly recovery;
   private readonly style;
@@ -34,19 +46,31 @@ export class PatchesView {
   private framedFor = '';
   private size = 1;
 
-  constructor(first: PatchesState, private edit: Edit, private tasks: Tasks) {
+  constructor(private files: PatchFile[], first: PatchesState, private edit: Edit, private tasks: Tasks) {
     this.state = first;
     this.scene = new PatchScene(this.stage, {
-      drag: (side, index, to) => {
+      drag: (handle, to) => {
         this.dragging = true;
-        this.edit((s) => { movePoint(s.document, side, index, to); s.point = [side, index]; }, {group: `patch ${side} ${index}`});
+        this.edit((s) => { movePoint(s.document, handle, snapped(to, s.snap)); s.point = handle; }, {group: `patch ${handle.join(' ')}`});
       },
-      dropped: () => { this.dragging = false; this.show(this.state, true); },
-      hover: (uv) => { if (!this.dragging) this.edit((s) => { s.cursor = uv; }, {silent: true}); },
+      dropped: () => {
+        if (!this.dragging) return;
+        this.dragging = false;
+        this.sayPoint();
+        this.show(this.state, true);
+      },
+      focused: (handle) => this.edit((s) => { s.point = handle; }, {silent: true}),
+      hover: (patch, uv) => { if (!this.dragging) this.edit((s) => { s.cursor = uv; if (uv) s.patch = patch; }, {silent: true}); },
       cameraMoved: (camera) => this.edit((s) => { s.camera = camera; }, {silent: true}),
     });
-    this.stage.append(this.overlay);
-    this.preset = choice('Example', [['', 'choose …'], ...PATCH_PRESETS.map(([name], k): [string, string] => [String(k), name])], (v) => { if (v !== '') this.open(PATCH_PRESETS[Number(v)][1]); });
+    this.stage.append(this.overlay, this.said);
+    this.source = choice('Surface shown', [['', 'a document of one’s own'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...PATCH_PRESETS.map(([name], k): [string, string] => [`preset ${k}`, `Example: ${name}`])], (v) => {
+      const [kind, k] = v.split(' ');
+      if (kind === 'file') this.openFile(Number(k));
+      if (kind === 'preset') this.open(PATCH_PRESETS[Number(k)][1]);
+    });
+    this.patch = choice('Patch', [['0', '']], (v) => this.edit((s) => { s.patch = Number(v); s.cursor = null; }));
+    this.snap = choice('Snap to', [['0', 'nothing'], ['0.05', '0.05'], ['0.1', '0.1'], ['0.5', '0.5'], ['1', '1']], (v) => this.edit((s) => { s.snap = Number(v); }));
     this.divisions = slider('Divisions of each side, n', '', (v) => this.edit((s) => { s.divisions = Math.round(v); }, {group: 'divisions'}), true);
     this.divisions.limits(1, 128, 1);
     this.recovery = choice('Recovery', [['barycentric', 'barycentric: flat triangles'], ['spr', 'SPR: the paper’s patches'], ['smooth', 'smooth: exact boundary, C1']], (v) => this.edit((s) => { s.recovery = v as Recovery; }));
@@ -55,27 +79,55 @@ export class PatchesView {
     this.polygons = toggle('Control points', (on) => this.edit((s) => { s.polygons = on; }));
     this.drawTriangle();
     const input = jsonInput(this.tasks, this.words, async (parsed, signal) => {
-      const document = editable(parsed);
-      if (!document) throw new Error('expected {"patches": [{"sides": [three curves of kind "bezier" with points of three numbers]}]}');
+      const {document, divisions} = readDocument(parsed);
       await ask('/api/patches/compute', {document, divisions: 4, recovery: 'barycentric', colour: 'none'}, signal);
-      this.open(document);
+      this.open(document, divisions);
     });
-    this.element = make('div', {class: 'controls'}, this.preset.element,
-      section('Surface', this.divisions.element, this.recovery.element, this.readout),
+    this.makes = make('div', {}, this.divisions.element, this.recovery.element);
+    this.pointPlace = section('Point', this.snap.element, this.numbers);
+    this.element = make('div', {class: 'controls'}, this.source.element,
+      section('Surface', this.makes, this.readout),
       section('Picture', this.style.element, this.mesh.element, this.polygons.element),
-      section('Parameter triangle', this.triangle as unknown as HTMLElement, this.cursorWords),
-      section('Point', this.numbers),
-      make('div', {class: 'row wrap'},
+      section('Parameter triangle', this.patch.element, this.triangle as unknown as HTMLElement, this.cursorWords,
+        make('div', {class: 'row'}, make('button', {type: 'button', title: 'The parameter triangle as a drawing', click: () => download('parameters.svg', svgFile(this.triangle))}, 'Save triangle as SVG'))),
+      this.pointPlace,
+      make('div', {class: 'row wrap'}, ...saveButtons((format) => this.save(format)),
         make('button', {type: 'button', title: 'The JSON that `retalho patch` reads', click: () => download('patch.json', new Blob([JSON.stringify(this.fileDocument(), null, 1)], {type: 'application/json'}))}, 'Save patch'),
         make('button', {type: 'button', click: () => input.click()}, 'Open patch'), input), this.words);
   }
 
-  open(document: PatchDocument): void {
-    this.edit((s) => { s.document = structuredClone(document); s.point = null; s.cursor = null; s.camera = null; });
+  open(document: PatchDocument, divisions: number | null = null): void {
+    this.edit((s) => {
+      Object.assign(s, {file: -1, document: structuredClone(document), patch: 0, point: null, cursor: null, camera: null});
+      if (divisions !== null) s.divisions = Math.min(128, Math.max(1, divisions));
+    });
+  }
+  /** A file of the command line: curves are a document to change, a model is looked at. */
+  openFile(k: number): void {
+    const {document} = this.files[k];
+    if (document === null) return this.edit((s) => { Object.assign(s, {file: k, patch: 0, point: null, cursor: null, camera: null}); });
+    const read = readDocument(document);
+    this.open(read.document, read.divisions);
   }
 
   private fileDocument(): unknown {
-    return {patches: [{...this.state.document.patches[0], divisions: this.state.divisions}]};
+    const {document, divisions} = this.state;
+    return {curves: document.curves, patches: document.patches.map((patch) => ({...patch, divisions}))};
+  }
+
+  /** Which patches: a model of the command line, or the document. */
+  private what(state: PatchesState): Record<string, unknown> {
+    return state.file >= 0 ? {model: state.file} : {document: state.document, divisions: state.divisions, recovery: state.recovery};
+  }
+
+  private save(format: SavedFormat): void {
+    const {name} = this.state.file >= 0 ? this.files[this.state.file] : this.state.document.patches[0];
+    saveFile(this.tasks, '/api/patches/save', this.what(this.state), name, format);
+  }
+
+  private sayPoint(): void {
+    const {document, point} = this.state;
+    if (point) this.said.textContent = `${handleName(document, point)}: ${pointsOf(document.curves[point[0]])[point[1]].map((v) => say(v, 5)).join(', ')}`;
   }
 
   show(state: PatchesState, active: boolean): void {
@@ -83,24 +135,25 @@ export class PatchesView {
     this.stage.hidden = this.element.hidden = !active;
     this.scene.visible(active);
     if (!active) return;
-    const {centre, size} = boundsOf(state.document);
-    this.size = size;
-    const shape = JSON.stringify(state.document.patches[0].sides.map((side) => side.points.length)) + state.document.patches[0].name;
-    if (this.framedFor !== shape) {
-      this.scene.frame(centre, size);
-      if (state.camera) this.scene.setCamera(state.camera);
-      this.framedFor = shape;
+    if (state.file < 0) {
+      const {centre, size} = boundsOf(state.document);
+      this.frame(JSON.stringify([state.document.curves.map((curve) => curve.points?.length), state.document.patches]), centre, size);
     }
+    const {size} = this;
     const colour = state.style === 'error' || state.style === 'gaussian' || state.style === 'mean' ? state.style : 'none';
-    const request = {document: state.document, divisions: state.divisions, recovery: state.recovery, colour, dragging: this.dragging};
+    const request = {...this.what(state), colour, dragging: this.dragging};
     this.tasks.want('patch', 'Computing the surface', JSON.stringify(request), async (signal) => this.take(await ask('/api/patches/compute', request, signal), state));
-    const cursor = state.cursor ? {document: state.document, divisions: state.divisions, recovery: state.recovery, u: state.cursor[0], v: state.cursor[1]} : null;
+    const cursor = state.cursor ? {...this.what(state), patch: state.patch, u: state.cursor[0], v: state.cursor[1]} : null;
     this.tasks.want('cursor', 'Asking', cursor && JSON.stringify(cursor), async (signal) => this.takeCursor(await ask('/api/patches/at', cursor ?? {}, signal)));
     if (!cursor) {
       this.scene.setCursor(null, size);
       this.cursorWords.replaceChildren(make('p', {class: 'hint'}, 'The cursor is where the mouse is, on the surface or in the triangle.'));
     }
-    this.preset.show('');
+    const preset = PATCH_PRESETS.findIndex(([, document]) => JSON.stringify(document) === JSON.stringify(state.document));
+    this.source.show(state.file >= 0 ? `file ${state.file}` : preset >= 0 ? `preset ${preset}` : '');
+    this.makes.hidden = this.polygons.element.hidden = this.pointPlace.hidden = state.file >= 0;
+    this.showPatches(state.file >= 0 ? this.names : state.document.patches.map(({name}) => name));
+    this.snap.show(String(state.snap));
     this.divisions.show(state.divisions);
     this.recovery.show(state.recovery);
     this.style.show(state.style);
@@ -116,11 +169,34 @@ export class PatchesView {
     this.showPoint(state);
   }
 
+  private frame(shape: string, centre: Vec3, size: number): void {
+    this.size = size;
+    if (this.framedFor === shape) return;
+    this.scene.frame(centre, size);
+    if (this.state.camera) this.scene.setCamera(this.state.camera);
+    this.framedFor = shape;
+  }
+
+  private showPatches(names: string[]): void {
+    this.patch.options(names.map((name, k): [string, string] => [String(k), name || `patch ${k + 1}`]));
+    this.patch.show(String(this.state.patch));
+    this.patch.element.hidden = names.length < 2;
+  }
+  private names: string[] = [];
+
   private take(answer: Answer, state: PatchesState): void {
     const {words, arrays} = answer;
+    this.names = words.patches as string[];
+    if (state.file >= 0) {
+      const points: Vec3[] = [], {position} = arrays;
+      for (let i = 0; i < position.length; i += 3) points.push([position[i], position[i + 1], position[i + 2]]);
+      const {centre, size} = boundsOfPoints(points.length > 20_000 ? points.filter((_, k) => k % Math.ceil(points.length / 20_000) === 0) : points);
+      this.frame(`file ${state.file}`, centre, size);
+      this.showPatches(this.names);
+    }
     const values = arrays.value as Float32Array | undefined;
     this.range = values ? robustRange(values, state.style !== 'error') : [0, 1];
-    this.scene.takeSurface(answer, state.recovery);
+    this.scene.takeSurface(answer);
     this.scene.show(this.state, this.size, this.range);
     const titles: Partial<Record<Style, [string, string]>> = {error: ['distance from the exact surface', 'units'], gaussian: ['Gaussian curvature', '1/unit²'], mean: ['mean curvature', '1/unit']};
     const title = titles[state.style];
@@ -128,6 +204,8 @@ export class PatchesView {
     this.overlay.hidden = !title;
     const rows: [string, string][] = [['nodes', say(words.nodes)], ['triangles', say(words.triangles)]];
     if (words.boundary_gap !== undefined) rows.push(['boundary gap', say(words.boundary_gap, 4)], ['gradient jump', say(words.gradient_jump, 4)], ['folds', say(words.folds)], ['turned triangles', say(words.turned)]);
+    const joins = words.joins as {watertight: boolean; angle: number; kind: string}[] | undefined;
+    if (joins?.length) rows.push(['shared sides', `${joins.length}, ${joins.every((join) => join.watertight) ? 'all watertight' : `${joins.filter((join) => !join.watertight).length} cracked`}`], ['largest angle over them', `${say(Math.max(...joins.map((join) => join.angle)), 4)}°`]);
     rows.push(['computed in', `${say(1000 * (words.seconds as number), 3)} ms`]);
     this.readout.replaceChildren(table(rows));
   }
@@ -141,15 +219,15 @@ export class PatchesView {
 
   private showPoint(state: PatchesState): void {
     if (this.numbers.contains(document.activeElement)) return;
-    if (!state.point) return this.numbers.replaceChildren(make('p', {class: 'hint'}, 'Drag a point of a curve, in the plane of the screen.'));
-    const [side, index] = state.point, p = state.document.patches[0].sides[side].points[index];
+    const handle = state.point, p = handle ? pointsOf(state.document.curves[handle[0]] ?? {kind: ''})[handle[1]] : undefined;
+    if (!handle || !p) return this.numbers.replaceChildren(make('p', {class: 'hint'}, 'Drag a point of a curve, in the plane of the screen; or reach it with Tab and move it with the arrow keys.'));
     this.numbers.replaceChildren(...['x', 'y', 'z'].map((name, k) => {
       const input: HTMLInputElement = make('input', {type: 'number', step: 'any', value: p[k], change: () => {
         const v = Number(input.value);
         if (input.value === '' || !Number.isFinite(v)) return;
-        this.edit((s) => { const to = [...s.document.patches[0].sides[side].points[index]] as Vec3; to[k] = v; movePoint(s.document, side, index, to); });
+        this.edit((s) => { const to = [...pointsOf(s.document.curves[handle[0]])[handle[1]]] as Vec3; to[k] = v; movePoint(s.document, handle, to); });
       }});
-      return make('div', {class: 'control'}, make('label', {}, `Side ${side + 1}, point ${index + 1}, ${name}`, input));
+      return make('div', {class: 'control'}, make('label', {}, `${handleName(state.document, handle)}, ${name}`, input));
     }));
   }
 

@@ -1,5 +1,6 @@
 // The terrain's side bar: what the state says, and what changes it.
 import {choice, make, slider, toggle} from '../dom';
+import {saveButtons, type SavedFormat} from '../saving';
 import {FITS, SIDE_BY_SIDE, SURFACES, roundStep, type Colour, type FileInfo, type Fit, type Surface, type TerrainState, type Tool} from './state';
 
 export type Edit = (change: (state: TerrainState) => void, group?: string) => void;
@@ -33,7 +34,7 @@ export class TerrainControls {
   private readonly onlyGrids: HTMLElement;
   private shownPanels = '';
 
-  constructor(private files: FileInfo[], private edit: Edit, openFile: (file: number) => void, saveModel: () => void, ask: (x: number, y: number) => void) {
+  constructor(private files: FileInfo[], private edit: Edit, openFile: (file: number) => void, save: (format: SavedFormat) => void, ask: (x: number, y: number) => void) {
     this.file = choice('Terrain', files.map((info, k): [string, string] => [String(k), info.name]), (v) => openFile(Number(v)));
     this.budget = choice('Fineness by', [['error', 'largest error'], ['vertices', 'number of vertices']], (v) => edit((s) => { s.budget = v as TerrainState['budget']; }));
     this.error = slider('Tolerance', '', (v) => edit((s) => { s.maxError = v; }, 'error'), true);
@@ -73,10 +74,9 @@ export class TerrainControls {
     const clear = make('button', {type: 'button', click: () => edit((s) => { s.asked = null; s.line = []; s.observer = null; })}, 'Clear marks');
 
     this.onlyGrids = make('div', {}, this.budget.element, this.error.element, this.vertices.element, this.layout.element, this.panels);
-    const save = make('button', {type: 'button', title: 'The first surface as a .retalho file, as `retalho fit` writes it', click: saveModel}, 'Save model');
     this.element = make('div', {class: 'controls'},
       this.file.element,
-      section('Surface', this.onlyGrids, save),
+      section('Surface', this.onlyGrids, make('div', {class: 'row wrap'}, ...saveButtons(save))),
       section('Picture', this.colour.element, this.triangles.element, this.contours.element, this.interval.element, this.exaggeration.element, this.light.element),
       section('Questions', toolBar, this.hint, byNumbers, this.eye.element, this.radius.element, clear, this.readout));
   }

@@ -1,6 +1,7 @@
 // The terrain view: asks the program for what the state says and puts the answers into the picture.
 import {ask, work, type Answer} from '../api';
-import {download, make, say, table} from '../dom';
+import {make, say, table} from '../dom';
+import {saveFile, type SavedFormat} from '../saving';
 import type {Tasks} from '../tasks';
 import {TerrainControls, type Edit} from './controls';
 import {Panel} from './panel';
@@ -21,7 +22,7 @@ export class TerrainView {
   constructor(readonly files: FileInfo[], first: TerrainState, private edit: Edit, private tasks: Tasks, openFile: (file: number) => void, cameraMoved: (camera: number[]) => void) {
     this.state = first;
     this.scene = new TerrainScene(cameraMoved);
-    this.controls = new TerrainControls(files, edit, openFile, () => void this.saveModel(), (x, y) => void this.askAt(x, y));
+    this.controls = new TerrainControls(files, edit, openFile, (format) => this.save(format), (x, y) => void this.askAt(x, y));
     this.stage.append(this.scene.element, this.chart);
     this.scene.canvas.addEventListener('click', (event) => this.clicked(event));
     this.scene.canvas.addEventListener('keydown', (event) => {
@@ -158,11 +159,10 @@ export class TerrainView {
     this.scene.redraw();
   }
 
-  private async saveModel(): Promise<void> {
+  /** The first surface. */
+  private save(format: SavedFormat): void {
     const [model] = this.models();
-    if (!model) return;
-    const {arrays} = await ask('/api/terrain/model', {model});
-    download(`${this.files[this.state.file].name.replace(/\.[^.]*$/, '')}.retalho`, new Blob([arrays.file]));
+    if (model) saveFile(this.tasks, '/api/terrain/save', {model}, this.files[this.state.file].name, format);
   }
 
   /** A place by its coordinates in the CRS. */

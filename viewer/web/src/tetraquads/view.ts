@@ -2,6 +2,7 @@
 import {ask, work} from '../api';
 import {choice, download, make, say, slider, table, toggle} from '../dom';
 import {jsonInput} from '../opening';
+import {saveButtons, saveFile, type SavedFormat} from '../saving';
 import type {Tasks} from '../tasks';
 import {TetraQuadScene} from './scene';
 import {coarseToFine, setTerm, termsOf, TERMS, TETRA_PRESETS, type QuadricDocument, type TetraQuadsState, type Term} from './state';
@@ -50,8 +51,7 @@ export class TetraQuadsView {
     this.scene = new TetraQuadScene(this.stage, (camera) => this.edit((s) => { s.camera = camera; }, {silent: true}), (event) => this.clicked(event));
     this.source = choice('Surface', [['', 'a document of one’s own'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...clouds.map((file, k): [string, string] => [`cloud ${k}`, `Points: ${file.name}`]), ...TETRA_PRESETS.map(([name], k): [string, string] => [`preset ${k}`, `Example: ${name}`])], (v) => {
       const [kind, k] = v.split(' ');
-      if (kind === 'file') this.edit((s) => { s.file = Number(k); s.cloud = -1; s.vertex = null; s.asked = null; s.camera = null; });
-      if (kind === 'cloud') this.edit((s) => { s.cloud = Number(k); s.file = -1; s.vertex = null; s.asked = null; s.camera = null; });
+      if (kind === 'file' || kind === 'cloud') this.openFile(kind, Number(k));
       if (kind === 'preset') this.open(TETRA_PRESETS[Number(k)][1]);
     });
     this.edges = toggle('Edges of the tetrahedra', (on) => this.edit((s) => { s.edges = on; }));
@@ -76,13 +76,24 @@ export class TetraQuadsView {
       section('Picture', this.edges.element, this.onSurface.element, this.cutAxis.element, this.cut.element),
       section('Question', this.askToggle.element, this.readout),
       section('Quadric of a vertex', this.editor),
-      make('div', {class: 'row wrap'},
+      make('div', {class: 'row wrap'}, ...saveButtons((format) => this.save(format)),
         make('button', {type: 'button', title: 'The JSON that `retalho reconstruct` makes a model of (docs/tetraquad.md)', click: () => download('quadrics.json', new Blob([JSON.stringify(this.state.document, null, 1)], {type: 'application/json'}))}, 'Save quadrics'),
         make('button', {type: 'button', click: () => input.click()}, 'Open quadrics'), input), this.words);
   }
 
+  /** A surface or points of the command line. */
+  openFile(kind: 'file' | 'cloud', k: number): void {
+    this.edit((s) => { Object.assign(s, {file: -1, cloud: -1, [kind]: k, vertex: null, asked: null, camera: null}); });
+  }
+
   open(document: QuadricDocument): void {
     this.edit((s) => { s.file = -1; s.cloud = -1; s.document = structuredClone(document); s.vertex = null; s.asked = null; s.camera = null; });
+  }
+
+  private save(format: SavedFormat): void {
+    const request = this.request(), {file, cloud} = this.state;
+    const name = file >= 0 ? this.files[file].name : cloud >= 0 ? this.clouds[cloud].name : 'tetraquad';
+    if (request) saveFile(this.tasks, '/api/tetraquads/save', request, name, format);
   }
 
   /** What is to be shown now; nothing while the first, coarse reconstruction of a cloud is on its way. */
