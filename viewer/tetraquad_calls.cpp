@@ -21,7 +21,7 @@
 namespace retalho::viewer {
 namespace {
 
-/// A surface with its ray caster. The page's coordinates are steps of the grid from the middle of the box.
+/// A surface with its ray caster. The page's coordinates are edges of the (largest) cubes from the middle of the box.
 struct Loaded {
   std::string key;
   std::shared_ptr<const TetraQuad> surface;
@@ -29,8 +29,11 @@ struct Loaded {
   std::unique_ptr<TetraQuadRays> rays;
   Vec3 middle;
 
-  Vec3 to_page(Vec3 p) const { return (p - middle) / surface->mesh.step; }
-  Vec3 from_page(Vec3 p) const { return middle + surface->mesh.step * p; }
+  /// Steps of the lattice to an edge of a cube: adaptive meshes have many.
+  double steps() const { return surface->mesh.forest ? static_cast<double>(TetForest::kUnit) : 1; }
+  double unit() const { return steps() * surface->mesh.step; }
+  Vec3 to_page(Vec3 p) const { return (p - middle) / unit(); }
+  Vec3 from_page(Vec3 p) const { return middle + unit() * p; }
 };
 using LoadedPointer = std::shared_ptr<const Loaded>;
 
@@ -124,8 +127,8 @@ Json place(Vec3 p) {
   return {p.x, p.y, p.z};
 }
 
-/// Vertices (steps from the middle), the ten factors of each one's quadric (about itself, in steps), and the
-/// tetrahedra that the surface may cross, turned so that their corners are right-handed.
+/// Vertices, the ten factors of each one's quadric (about itself), both in the page's coordinates, and the tetrahedra
+/// that the surface may cross, turned so that their corners are right-handed.
 Answer load_call(Surfaces& surfaces, const Json& input, const Context& context) {
   const LoadedPointer loaded = surfaces.load(input, context);
   const TetraQuad& surface = *loaded->surface;
@@ -135,7 +138,11 @@ Answer load_call(Surfaces& surfaces, const Json& input, const Context& context) 
   for (std::size_t v = 0; v < mesh.lattice.size(); ++v) {
     at.push_back(loaded->to_page(mesh.position(v)));
     push(vertices, at.back());
-    for (const double factor : surface.quadrics[v]) quadrics.push_back(static_cast<float>(factor));
+    // Values are lengths: in another unit the constant is divided by it, and what is of second degree is multiplied.
+    for (std::size_t k = 0; k < 10; ++k)
+      quadrics.push_back(static_cast<float>(surface.quadrics[v][k] * std::pow(loaded->steps(), k == 0  ? -1
+                                                                                               : k < 4 ? 0
+                                                                                                       : 1)));
   }
   std::vector<std::uint32_t> tets, crossed;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -152,7 +159,7 @@ Answer load_call(Surfaces& surfaces, const Json& input, const Context& context) 
   return {{{"vertices", mesh.lattice.size()},
            {"tetrahedra", mesh.tets.size()},
            {"crossed", crossed.size()},
-           {"step", mesh.step},
+           {"step", loaded->unit()},
            {"middle", place(loaded->middle)},
            {"lattice", lattice}},
           {make_array("vertices", vertices), make_array("quadrics", quadrics), make_array("tets", tets),
@@ -172,10 +179,10 @@ Answer ray_call(Surfaces& surfaces, const Json& input, const Context& context) {
   const LoadedPointer loaded = surfaces.load(input, context);
   const Vec3 origin = loaded->from_page(vector_of(input, "origin")), direction = vector_of(input, "direction");
   const double from = number_or(input, "from", 0, 1e9, 0), to = number_or(input, "to", 0, 1e9, 1e9);
-  const double step = loaded->surface->mesh.step;
-  const auto hit = loaded->rays->first(origin, step * direction, from, to);
+  const Vec3 way = loaded->unit() * direction;
+  const auto hit = loaded->rays->first(origin, way, from, to);
   if (!hit) return {{{"hit", false}}};
-  const Vec3 point = origin + hit->t * step * direction;
+  const Vec3 point = origin + hit->t * way;
   const Jet3 jet = loaded->field->gradient(hit->tet, hit->b);
   const Vec3 gradient = jet.gradient;
   return {{{"hit", true},
@@ -183,6 +190,7 @@ Answer ray_call(Surfaces& surfaces, const Json& input, const Context& context) {
            {"page_point", place(loaded->to_page(point))},
            {"point", place(point)},
            {"normal", norm(gradient) > 0 ? place(normalized(gradient)) : Json(nullptr)},
+           {"cell", loaded->surface->mesh.size(hit->tet) / loaded->steps()},
            {"tet", hit->tet}}};
 }
 

@@ -112,7 +112,7 @@ export const tests = [
 
     await tool(view, 'Profile');
     await page.mouse.click(620, 470);
-    await page.mouse.click(900, 560);
+    await page.mouse.click(900, 530);
     await view.quiet();
     assert.equal(await page.locator('.chart .series').count(), 2, 'the surface and the grid');
 

@@ -184,7 +184,7 @@ export class TetraQuadsView {
       const rows: [string, string][] = [['point', (words.point as number[]).map((v) => say(v, 6)).join(', ')]];
       if (normal) rows.push(['normal', normal.map((v) => say(v, 4)).join(', ')]);
       rows.push(['tetrahedron', say(words.tet)]);
-      rows.push(['the picture’s hit is off by', shader ? `${say(Math.hypot(...point.map((v, k) => v - shader[k])), 3)} of a cell` : 'it hits nothing']);
+      rows.push(['the picture’s hit is off by', shader ? `${say(Math.hypot(...point.map((v, k) => v - shader[k])) / (words.cell as number), 3)} of a cell` : 'it hits nothing']);
       this.readout.replaceChildren(table(rows));
     }
     this.scene.show(this.state, this.vertexPlace(), this.point);
