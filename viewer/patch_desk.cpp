@@ -22,6 +22,7 @@ std::vector<PatchSides> sides_of(const Json& input, bool dragging) {
   if (specs.size() > kMostPatches)
     throw BadInput(fmt::format("the page shows at most {} patches, the document has {}", kMostPatches, specs.size()));
   std::vector<PatchSides> sides;
+  sides.reserve(specs.size());
   for (const PatchSpec& spec : specs) sides.push_back(join_sides(spec.sides, {.crossings = !dragging}, spec.where));
   return sides;
 }
@@ -73,6 +74,7 @@ void PatchDesk::prepare(const Json& input, bool dragging, const Context& context
   if (!state_ || state_->wanted != wanted) {
     state_.reset();
     std::vector<Patch> patches;
+    patches.reserve(sides.size());
     const std::size_t n = wanted.divisions;
     for (const PatchSides& one : sides)
       patches.push_back(make_patch(one, {.divisions = {n, n, n}, .recovery = wanted.recovery}, context));

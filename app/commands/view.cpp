@@ -48,8 +48,9 @@ void add_view(CLI::App& root, Program& program) {
                                   "retalho view bunny.retalho hull.json curves.json\n"
                                   "retalho view --no-browser dem.tif");
   command
-      ->add_option("FILE", options->files,
-                   "Elevation grids, models of every kind (tiled: the folder), points; curves, patches and quadrics as JSON")
+      ->add_option(
+          "FILE", options->files,
+          "Elevation grids, models of every kind (tiled: the folder), points; curves, patches and quadrics as JSON")
       ->type_name("");
   command->add_flag("--no-browser", options->no_browser, "Print the address on standard output and open nothing");
   command->callback([options, &program] { run(program, *options); });
