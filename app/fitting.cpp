@@ -21,6 +21,7 @@ const std::vector<std::string> kCrossDerivatives{"perpendicular", "cubic"};
 const std::vector<std::string> kFits{"interpolate", "least-squares", "z-only"};
 const std::vector<std::string> kRefinements{"flat", "surface"};
 const std::vector<std::string> kFormats{"exact", "compact"};
+const std::vector<std::string> kEfforts{"fast", "normal", "best"};
 constexpr const char* kAuto = "auto";
 
 }  // namespace
@@ -28,7 +29,8 @@ constexpr const char* kAuto = "auto";
 void add_budget_flags(CLI::App& command, BudgetFlags& flags) {
   command
       .add_option("--max-error", flags.max_error,
-                  "Largest error of the flat triangulation, in height units (0: every cell)")
+                  "Largest error, in height units (0: every cell): of the surface itself at every cell, with --refine "
+                  "flat of the flat triangulation under it")
       ->type_name("E");
   command.add_option("--vertices", flags.vertices, "How many vertices; with --max-error: whichever comes first")
       ->type_name("N");
@@ -78,16 +80,24 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
                   "Clough-Tocher, across edges: perpendicular (default) or cubic")
       ->type_name("KIND");
   command
-      .add_option("--fit", flags.fit,
-                  "Grids: interpolate the vertices (default), least-squares: heights and gradients fitted to every "
-                  "cell, or z-only: heights alone, with gradients that follow from them")
+      .add_option(
+          "--fit", flags.fit,
+          "Grids, --refine flat: interpolate the vertices (default there), least-squares: heights and gradients "
+          "fitted to every cell, or z-only: heights alone, with gradients that follow from them")
       ->type_name("KIND");
   command
       .add_option(
           "--refine", flags.refine,
-          "Grids: vertices chosen for the flat triangulation (default), or surface: for the surface itself, with "
-          "heights and gradients fitted to every cell")
+          "Grids: vertices chosen for the surface itself, with heights and gradients fitted to every cell (surface, "
+          "the "
+          "default of smooth surfaces without --gradients, --fit, --cross-derivative or --tiles), or for the flat "
+          "triangulation (flat)")
       ->type_name("KIND");
+  command
+      .add_option("--effort", flags.effort,
+                  "How long the vertices of --refine surface are moved about: fast (not at all; about 5 s a million "
+                  "cells on one core), normal (default; 40 s) or best (3 minutes)")
+      ->type_name("HOW");
   command
       .add_option("--format", flags.format,
                   "exact: every number as computed (default), or compact: refined by the surface, rounded within the "
@@ -103,6 +113,7 @@ bool compact_format(const SurfaceFlags& flags) {
 }
 
 std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from_points) {
+  const Effort effort = resolve_effort(flags);
   const auto refuse = [](const std::string& what, const char* where) {
     throw UsageError("--format compact " + what, {}, where);
   };
@@ -110,13 +121,15 @@ std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from
   if (!flags.gradients.empty()) refuse("fits the gradients: leave --gradients out", "--gradients");
   if (flags.cross_derivative != kCrossDerivatives[0])
     refuse("takes --cross-derivative perpendicular", "--cross-derivative");
-  choose("--refine", flags.refine, kRefinements);
-  const bool z_only = choose("--fit", flags.fit, kFits) == 2;
-  if (flags.surface == kAuto) return {{.surface = SurfaceKind::clough_tocher}, {.surface = SurfaceKind::linear}};
+  if (!flags.refine.empty()) choose("--refine", flags.refine, kRefinements);
+  const bool z_only = resolve_fit(flags, from_points) == FitKind::z_only;
+  if (flags.surface == kAuto)
+    return {{.surface = SurfaceKind::clough_tocher, .effort = effort},
+            {.surface = SurfaceKind::linear, .effort = effort}};
   const auto kind = static_cast<SurfaceKind>(choose("--surface", flags.surface, kSurfaces) + 1);
   if (kind == SurfaceKind::powell_sabin) refuse("holds linear and clough-tocher surfaces", "--surface");
   if (z_only && kind == SurfaceKind::linear) refuse("--fit z-only is for clough-tocher", "--fit");
-  return {{.surface = kind, .heights_only = z_only}};
+  return {{.surface = kind, .heights_only = z_only, .effort = effort}};
 }
 
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {
@@ -130,7 +143,7 @@ SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {
 }
 
 FitKind resolve_fit(const SurfaceFlags& flags, bool from_points) {
-  const auto fit = static_cast<FitKind>(choose("--fit", flags.fit, kFits));
+  const auto fit = static_cast<FitKind>(choose("--fit", flags.fit.empty() ? kFits[0] : flags.fit, kFits));
   if (fit == FitKind::interpolate) return fit;
   if (from_points) throw UsageError("--fit " + flags.fit + " takes grids: survey points are interpolated", {}, "--fit");
   if (!flags.gradients.empty())
@@ -141,15 +154,30 @@ FitKind resolve_fit(const SurfaceFlags& flags, bool from_points) {
   return fit;
 }
 
-bool refines_surface(const SurfaceFlags& flags, bool from_points) {
-  if (choose("--refine", flags.refine, kRefinements) == 0) return false;
-  if (from_points) throw UsageError("--refine surface takes grids", {}, "--refine");
+bool refines_surface(const SurfaceFlags& flags, const BudgetFlags& budget, bool from_points) {
+  const bool exact = budget.max_error == 0.0;  // every cell: there is nothing to choose
+  if (flags.refine.empty() && flags.effort.empty()) {
+    return !from_points && !exact && flags.surface != kSurfaces[0] && flags.gradients.empty() &&
+           flags.cross_derivative == kCrossDerivatives[0] && flags.fit.empty();
+  }
+  const char* what = flags.refine.empty() ? "--effort" : "--refine surface";
+  if (!flags.refine.empty() && choose("--refine", flags.refine, kRefinements) == 0) {
+    if (!flags.effort.empty())
+      throw UsageError("--effort moves the vertices of a surface: --refine flat has none to move", {}, "--effort");
+    return false;
+  }
+  if (from_points) throw UsageError(fmt::format("{} takes grids", what), {}, "--refine");
   SurfaceFlags fitted = flags;
   fitted.fit = kFits[1];
   resolve_fit(fitted, from_points);
   if (flags.fit == kFits[2])
-    throw UsageError("--refine surface fits heights and gradients: --fit z-only needs --refine flat", {}, "--fit");
+    throw UsageError(fmt::format("{} fits heights and gradients: --fit z-only needs --refine flat", what), {}, "--fit");
+  if (exact) throw UsageError(fmt::format("{} takes a --max-error over 0", what), {}, "--max-error");
   return true;
+}
+
+Effort resolve_effort(const SurfaceFlags& flags) {
+  return flags.effort.empty() ? Effort::normal : static_cast<Effort>(choose("--effort", flags.effort, kEfforts));
 }
 
 Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context) {

@@ -12,6 +12,7 @@
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
+#include "retalho/terrain/surface_refine.h"
 
 namespace retalho::app {
 
@@ -36,10 +37,11 @@ Budget resolve(const Program& program, const BudgetFlags& flags, std::size_t val
 /// Which surface, as words.
 struct SurfaceFlags {
   std::string surface = "clough-tocher";
-  std::string gradients;  ///< empty: normals for grids, quadratic for points
+  std::string gradients = {};  ///< empty: normals for grids, quadratic for points
   std::string cross_derivative = "perpendicular";
-  std::string fit = "interpolate";
-  std::string refine = "flat";
+  std::string fit = {};     ///< empty: interpolate, where the vertices are not refined by the surface
+  std::string refine = {};  ///< empty: surface for a smooth surface of a grid whose gradients are not asked for
+  std::string effort = {};  ///< empty: normal
   std::string format = "exact";
 };
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
@@ -52,8 +54,11 @@ SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points);
 enum class FitKind : std::uint8_t { interpolate, least_squares, z_only };
 /// Throws UsageError with the choices, and for what does not go together.
 FitKind resolve_fit(const SurfaceFlags& flags, bool from_points);
-/// --refine surface: the vertices are chosen by the surface's own error. Throws as resolve_fit.
-bool refines_surface(const SurfaceFlags& flags, bool from_points);
+/// Are the vertices chosen by the surface's own error (--refine surface, or nothing that speaks against it)? Throws as
+/// resolve_fit.
+bool refines_surface(const SurfaceFlags& flags, const BudgetFlags& budget, bool from_points);
+/// --effort: how long they are moved about.
+Effort resolve_effort(const SurfaceFlags& flags);
 /// --format compact: numbers rounded, the fit knows of it (model/compact.h).
 bool compact_format(const SurfaceFlags& flags);
 /// Which surfaces a compact file may hold: --surface auto gives several, of which the smallest file counts. Throws

@@ -75,15 +75,15 @@ bool takes_points(const std::string& path, const PointOptions& options) {
   return std::find(vectors.begin(), vectors.end(), ending) != vectors.end();
 }
 
-Model load_any_model(const std::string& path) {
+Model load_any_model(const std::string& path, ModelFileNotes* notes) {
   note_input(path);
   if (std::filesystem::exists(path) && !is_model_file(path))
     throw CannotRead(fmt::format("'{}' is not a model file of retalho: make one with `retalho fit`", path), path);
-  return load_model(path);
+  return load_model(path, notes);
 }
 
-Terrain load_terrain(const std::string& path) {
-  Model model = load_any_model(path);
+Terrain load_terrain(const std::string& path, ModelFileNotes* notes) {
+  Model model = load_any_model(path, notes);
   if (Terrain* terrain = std::get_if<Terrain>(&model)) return std::move(*terrain);
   throw BadInput(fmt::format("'{}' holds no terrain: this command works on models made by `retalho fit`", path), path);
 }

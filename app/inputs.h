@@ -35,9 +35,9 @@ PointCloud load_points(const Program& program, const std::string& path, const Po
 /// Is this path read as points: by its ending, or since an attribute or a layer is named?
 bool takes_points(const std::string& path, const PointOptions& options);
 /// A terrain model. Throws BadInput when the model holds another kind of surface.
-Terrain load_terrain(const std::string& path);
+Terrain load_terrain(const std::string& path, ModelFileNotes* notes = nullptr);
 /// Any model. Throws CannotRead, which says how models are made where the file is none.
-Model load_any_model(const std::string& path);
+Model load_any_model(const std::string& path, ModelFileNotes* notes = nullptr);
 
 /// The name of a CRS, out of its WKT; empty when there is none.
 std::string crs_name(const std::string& wkt);

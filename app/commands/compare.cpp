@@ -1,6 +1,7 @@
 // retalho compare: models, or the kinds of surface on one triangulation, against the grid that they stand for.
 #include <fmt/format.h>
 
+#include "baselines.h"
 #include "fitting.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
@@ -20,25 +21,29 @@ struct Options {
   GridFlags grid;
   BudgetFlags budget;
   VisibilityFlags visibility;
-  bool markdown = false, csv = false;
+  bool markdown = false, csv = false, baselines = false;
   std::size_t tile_memory = TileReader::kBound >> 20;  // MB
 };
 
 /// Every kind on the same TIN: the paper's gradients first, then the better ones.
 const std::vector<SurfaceFlags>& kinds() {
-  static const std::vector<SurfaceFlags> all{{"linear", "normals", "perpendicular"},
-                                             {"powell-sabin", "normals", "perpendicular"},
-                                             {"powell-sabin", "quadratic", "perpendicular"},
-                                             {"powell-sabin", "network", "perpendicular"},
-                                             {"clough-tocher", "normals", "perpendicular"},
-                                             {"clough-tocher", "quadratic", "perpendicular"},
-                                             {"clough-tocher", "network", "perpendicular"},
-                                             {"clough-tocher", "quadratic", "cubic"},
-                                             {"linear", "", "perpendicular", "least-squares"},
-                                             {"powell-sabin", "", "perpendicular", "z-only"},
-                                             {"powell-sabin", "", "perpendicular", "least-squares"},
-                                             {"clough-tocher", "", "perpendicular", "z-only"},
-                                             {"clough-tocher", "", "perpendicular", "least-squares"}};
+  static const std::vector<SurfaceFlags> all = [] {
+    std::vector<SurfaceFlags> list;
+    const auto estimated = [&](const char* surface, const char* gradients, const char* cross = "perpendicular") {
+      list.push_back({.surface = surface, .gradients = gradients, .cross_derivative = cross, .refine = "flat"});
+    };
+    const auto fitted = [&](const char* surface, const char* fit) {
+      list.push_back({.surface = surface, .fit = fit, .refine = "flat"});
+    };
+    estimated("linear", "normals");
+    for (const char* surface : {"powell-sabin", "clough-tocher"})
+      for (const char* gradients : {"normals", "quadratic", "network"}) estimated(surface, gradients);
+    estimated("clough-tocher", "quadratic", "cubic");
+    fitted("linear", "least-squares");
+    for (const char* surface : {"powell-sabin", "clough-tocher"})
+      for (const char* fit : {"z-only", "least-squares"}) fitted(surface, fit);
+    return list;
+  }();
   return all;
 }
 
@@ -59,6 +64,8 @@ std::vector<ModelReport> compare_kinds(const Program& program, const Options& op
     if (sight != nullptr) sight->add(terrain, report.name, context);
     reports.push_back(report);
   }
+  if (options.baselines)
+    for (ModelReport& report : smooth_rivals(tin.vertex_count(), raster, context)) reports.push_back(std::move(report));
   return reports;
 }
 
@@ -66,7 +73,8 @@ std::vector<ModelReport> compare_models(const Options& options, const Raster& ra
                                         const Context& context) {
   std::vector<ModelReport> reports;
   for (const std::string& path : options.models) {
-    const Terrain terrain = load_terrain(path);
+    ModelFileNotes notes;
+    const Terrain terrain = load_terrain(path, &notes);
     check_same_crs(terrain.georef, path, raster.georef, options.dem);
     ModelReport report = facts_of(terrain);
     report.name = path;
@@ -74,13 +82,16 @@ std::vector<ModelReport> compare_models(const Options& options, const Raster& ra
     report.errors = assess(terrain, raster, terrain.tolerance, context);
     if (sight != nullptr) sight->add(terrain, report.name, context);
     reports.push_back(report);
+    if (!options.baselines) continue;
+    const Rival rival{path, report.numbers, report.bytes, notes.compact};
+    for (ModelReport& flat : flat_baselines(rival, raster, context)) reports.push_back(std::move(flat));
   }
   return reports;
 }
 
 /// Do all models stand for this grid in tiles, and can the grid be read by windows? Then nothing is held whole.
 bool can_stream(const Options& options) {
-  if (options.models.empty() || options.visibility.radius) return false;
+  if (options.models.empty() || options.visibility.radius || options.baselines) return false;
   for (const std::string& path : options.models)
     if (!is_tiled_model(path)) return false;
   try {
@@ -168,6 +179,8 @@ void run(const Program& program, const Options& options) {
     throw UsageError("models and a budget (--vertices, --max-error, --ratio) exclude each other: give one of them");
   if (static_cast<int>(options.markdown) + static_cast<int>(options.csv) + static_cast<int>(program.json) > 1)
     throw UsageError("--json, --markdown and --csv exclude each other");
+  if (options.baselines && options.visibility.radius)
+    throw UsageError("--baselines and --visibility exclude each other: ask for one after the other", {}, "--baselines");
   if (!options.visibility.maps.empty() && !options.visibility.radius)
     throw UsageError("--visibility-maps needs --visibility RADIUS (0: no limit)", {}, "--visibility-maps");
   const Context context = program.context();
@@ -217,6 +230,7 @@ void add_compare(CLI::App& root, Program& program) {
                   "retalho compare dem.tif dem.retalho flat.retalho\n"
                   "retalho compare dem.tif --vertices 1000\n"
                   "retalho compare dem.tif --ratio 1% --markdown\n"
+                  "retalho compare dem.tif dem.retalho --baselines\n"
                   "retalho compare dem.tif --vertices 1000 --visibility 2000 --visibility-maps pictures");
   command->add_option("DEM", options->dem, "Elevation grid")->required()->type_name("");
   command->add_option("MODEL", options->models, "Models; none: every kind of surface is fitted and compared")
@@ -228,6 +242,9 @@ void add_compare(CLI::App& root, Program& program) {
       ->add_option("--tile-memory", options->tile_memory,
                    "Tiled models: how much of them is kept in memory (default 512)")
       ->type_name("MB");
+  command->add_flag("--baselines", options->baselines,
+                    "Beside each model flat surfaces with its numbers and with its bytes: greedy, and strong (heights "
+                    "fitted, vertices relocated); without models smooth ones beside the strong flat one");
   command->add_flag("--markdown", options->markdown, "The table as Markdown");
   command->add_flag("--csv", options->csv, "The table as CSV");
   command->callback([options, &program] { run(program, *options); });

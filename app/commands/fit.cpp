@@ -71,11 +71,15 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   const Budget budget = resolve(program, options.budget, summary.valid, range);
   Fit fit;
   const Stopwatch watch;
-  if (refines_surface(options.surface, false)) {
-    if (budget.tolerance && budget.max_error == 0)
-      throw UsageError("--refine surface takes a --max-error over 0", {}, "--max-error");
-    fit.terrain = refine_surface(
-        raster, {.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices}, context);
+  if (refines_surface(options.surface, options.budget, false)) {
+    const RefineRounds rounds = rounds_of(resolve_effort(options.surface));
+    fit.terrain = refine_surface(raster,
+                                 {.surface = surface.surface,
+                                  .max_error = budget.max_error,
+                                  .vertices = budget.vertices,
+                                  .relocations = rounds.relocations,
+                                  .exchanges = rounds.exchanges},
+                                 context);
     fit.seconds_triangulation = watch.seconds();
   } else {
     Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
@@ -157,7 +161,7 @@ void run(const Program& program, const Options& options) {
   check_breakline_flags(options.breaklines, from_points);
   if (compact) compact_options(options.surface, from_points);
   const SurfaceOptions surface = compact ? SurfaceOptions{} : resolve(options.surface, from_points);
-  const bool by_surface = compact || refines_surface(options.surface, from_points);
+  const bool by_surface = compact || refines_surface(options.surface, options.budget, from_points);
   if (!compact) resolve_fit(options.surface, from_points);
   check_output(program, options.output, {".retalho"}, {options.input});
   const Context context = program.context();
@@ -192,7 +196,8 @@ void add_fit(CLI::App& root, Program& program) {
       add_command(root, program, "fit", "An elevation grid or survey points to a terrain model, with its error report",
                   "retalho fit dem.tif -o dem.retalho --max-error 2\n"
                   "retalho fit dem.tif -o flat.retalho --surface linear --ratio 1%\n"
-                  "retalho fit dem.tif -o smooth.retalho --refine surface --ratio 1%\n"
+                  "retalho fit dem.tif -o best.retalho --ratio 1% --effort best\n"
+                  "retalho fit dem.tif -o quick.retalho --max-error 2 --refine flat\n"
                   "retalho fit country.vrt -o country --tiles 2048 --max-error 1\n"
                   "retalho fit dem.tif -o small.retalho --max-error 2 --format compact\n"
                   "retalho fit survey.csv -o site.retalho --breaklines kerbs.gpkg\n"

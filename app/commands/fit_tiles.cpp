@@ -14,7 +14,8 @@ namespace {
 TileOptions options_of(const TileFlags& flags, const BudgetFlags& budget, const SurfaceFlags& surface) {
   if ((budget.max_error ? 1 : 0) + (budget.vertices ? 1 : 0) + (budget.ratio.empty() ? 0 : 1) != 1)
     throw UsageError("--tiles takes one of --max-error E, --vertices N and --ratio R", {}, "--tiles");
-  if (refines_surface(surface, false)) throw UsageError("--tiles takes --refine flat", {}, "--tiles");
+  if ((!surface.refine.empty() || !surface.effort.empty()) && refines_surface(surface, budget, false))
+    throw UsageError("--tiles takes --refine flat", {}, "--tiles");
   const FitKind fit = resolve_fit(surface, false);
   if (fit == FitKind::z_only)
     throw UsageError(

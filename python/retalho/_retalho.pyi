@@ -432,10 +432,10 @@ def read_grid(
 def fit(
     z: Heights, *, transform: ArrayLike | None = None, crs: Crs | None = None, nodata: float | None = None,
     max_error: float | None = None, vertices: int | None = None, ratio: float | None = None,
-    surface: Surface = "clough-tocher", gradients: Gradients | None = None,
-    cross_derivative: CrossDerivative = "perpendicular",
-    fit: Literal["interpolate", "least-squares", "z-only"] = "interpolate",
-    refine: Literal["flat", "surface"] = "flat", threads: int = 0, progress: Progress | None = None,
+    surface: Surface = "clough-tocher", gradients: Gradients | None = None, cross_derivative: CrossDerivative = ...,
+    fit: Literal["interpolate", "least-squares", "z-only"] | None = None,
+    refine: Literal["flat", "surface"] | None = None, effort: Literal["fast", "normal", "best"] | None = None,
+    threads: int = 0, progress: Progress | None = None,
 ) -> Terrain: ...
 def fit_compact(
     z: Heights, *, transform: ArrayLike | None = None, crs: Crs | None = None, nodata: float | None = None,

@@ -31,7 +31,8 @@ constexpr std::size_t kLeastVertices = 3;
 struct Asked {
   std::optional<double> max_error, ratio;
   std::optional<long long> vertices;
-  std::string surface = "clough-tocher", cross_derivative = "perpendicular", fit = "interpolate", refine = "flat";
+  std::string surface = "clough-tocher", cross_derivative = "perpendicular";
+  std::optional<std::string> fit, refine, effort;  // none: as the program chooses
   std::optional<std::string> gradients;
 
   bool budget() const { return max_error || ratio || vertices; }
@@ -83,34 +84,54 @@ SurfaceOptions surface_options(const Asked& asked, bool points) {
   return options;
 }
 
+/// Are the vertices chosen by the surface's own error? As the program does: for a smooth surface, unless something that
+/// is asked for speaks against it.
+bool refines_surface(const Asked& asked) {
+  if (asked.refine) return *asked.refine == "surface";
+  return asked.effort || (asked.max_error != 0.0 && asked.surface != "linear" && !asked.gradients && !asked.fit &&
+                          asked.cross_derivative == "perpendicular");
+}
+
 /// Throws UsageError for what does not go together.
 void check_fit(const Asked& asked) {
-  choose("fit", asked.fit, {"interpolate", "least-squares", "z-only"});
-  choose("refine", asked.refine, {"flat", "surface"});
-  const bool fitted = asked.fit != "interpolate" || asked.refine == "surface";
-  if (!fitted) return;
+  const std::string fit = choose("fit", asked.fit.value_or("interpolate"), {"interpolate", "least-squares", "z-only"});
+  if (asked.refine) choose("refine", *asked.refine, {"flat", "surface"});
+  if (asked.effort) choose("effort", *asked.effort, {"fast", "normal", "best"});
+  const bool refined = refines_surface(asked);
+  if (asked.effort && !refined)
+    throw UsageError("effort moves the vertices of a surface: refine='flat' has none to move", {}, "effort");
+  if (fit == "interpolate" && !refined) return;
   if (asked.gradients)
     throw UsageError("gradients exclude fit='least-squares', fit='z-only' and refine='surface', which set them", {},
                      "gradients");
   if (asked.cross_derivative != "perpendicular")
     throw UsageError("a least-squares fit takes cross_derivative='perpendicular'", {}, "cross_derivative");
-  if (asked.refine == "surface" && asked.fit == "z-only")
+  if (refined && fit == "z-only")
     throw UsageError("refine='surface' fits heights and gradients: fit='z-only' needs refine='flat'", {}, "fit");
+  if (refined && asked.max_error == 0.0) throw UsageError("refine='surface' takes a max_error over 0", {}, "max_error");
 }
 
 Terrain fit_raster(const Raster& raster, const Asked& asked, const SurfaceOptions& surface, const Context& context) {
   const RasterSummary summary = summarize(raster);
   const Budget budget = resolve(asked, summary.valid, summary.valid > 0 ? summary.maximum - summary.minimum : 0);
   Terrain terrain;
-  if (asked.refine == "surface") {
-    if (asked.max_error && *asked.max_error == 0)
-      throw UsageError("refine='surface' takes a max_error over 0", {}, "max_error");
-    terrain = refine_surface(
-        raster, {.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices}, context);
+  const std::string fit = asked.fit.value_or("interpolate");
+  if (refines_surface(asked) && (budget.max_error > 0 || budget.vertices > 0)) {
+    const std::string effort = asked.effort.value_or("normal");
+    const RefineRounds rounds = rounds_of(effort == "fast"   ? Effort::fast
+                                          : effort == "best" ? Effort::best
+                                                             : Effort::normal);
+    terrain = refine_surface(raster,
+                             {.surface = surface.surface,
+                              .max_error = budget.max_error,
+                              .vertices = budget.vertices,
+                              .relocations = rounds.relocations,
+                              .exchanges = rounds.exchanges},
+                             context);
   } else {
     terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, context);
-    if (asked.fit != "interpolate")
-      terrain = fit_least_squares(std::move(terrain), raster, {.heights_only = asked.fit == "z-only"}, context);
+    if (fit != "interpolate")
+      terrain = fit_least_squares(std::move(terrain), raster, {.heights_only = fit == "z-only"}, context);
   }
   terrain.tolerance = budget.max_error;
   return terrain;
@@ -168,8 +189,11 @@ void add_fit(py::module_& module) {
       [](const py::object& z, const py::object& transform, const py::object& crs, const py::object& nodata,
          std::optional<double> max_error, std::optional<long long> vertices, std::optional<double> ratio,
          const std::string& surface, std::optional<std::string> gradients, const std::string& cross_derivative,
-         const std::string& fit, const std::string& refine, int threads, const py::object& progress) {
-        const Asked asked{max_error, ratio, vertices, surface, cross_derivative, fit, refine, std::move(gradients)};
+         std::optional<std::string> fit, std::optional<std::string> refine, std::optional<std::string> effort,
+         int threads, const py::object& progress) {
+        const Asked asked{max_error,           ratio,          vertices,          surface,
+                          cross_derivative,    std::move(fit), std::move(refine), std::move(effort),
+                          std::move(gradients)};
         const SurfaceOptions options = surface_options(asked, false);
         check_fit(asked);
         resolve(asked, 1, 1);  // bad options are told before the grid is read
@@ -181,15 +205,20 @@ void add_fit(py::module_& module) {
       py::arg("z"), py::kw_only(), py::arg("transform") = py::none(), py::arg("crs") = py::none(),
       py::arg("nodata") = py::none(), py::arg("max_error") = py::none(), py::arg("vertices") = py::none(),
       py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher", py::arg("gradients") = py::none(),
-      py::arg("cross_derivative") = "perpendicular", py::arg("fit") = "interpolate", py::arg("refine") = "flat",
-      py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("cross_derivative") = "perpendicular", py::arg("fit") = py::none(), py::arg("refine") = py::none(),
+      py::arg("effort") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
       "An elevation grid to a terrain model.\n\n"
       "z: heights of shape (rows, columns), rows from north (array-like, masked array, DataArray, Grid or path); NaN "
-      "and masked cells hold no data. max_error: largest error of the flat triangulation at any valid cell, height "
-      "units (refine='surface': of the surface itself); vertices, ratio: a budget instead, or whichever comes first; "
+      "and masked cells hold no data. max_error: largest error of the surface at any valid cell, height "
+      "units (refine='flat': of the flat triangulation under it); vertices, ratio: a budget instead, or whichever "
+      "comes first; "
       "none of them: 1 % of the height range. surface: linear, powell-sabin or clough-tocher. gradients: normals, "
-      "quadratic or network. fit: interpolate, least-squares or z-only. Raises BadInput (a ValueError) for grids "
-      "without area, UsageError (a ValueError) for options. About 0.5 us a cell.");
+      "quadratic or network. fit: interpolate, least-squares or z-only. refine: surface (the vertices are chosen by "
+      "the "
+      "surface's own error and everything is fitted: what a smooth surface gets without gradients, fit or "
+      "cross_derivative) or flat. effort: fast, normal (default) or best, how long vertices are moved about. Raises "
+      "BadInput (a ValueError) for grids without area, UsageError (a ValueError) for options. About 40 us a cell, 5 "
+      "with effort='fast', 0.5 with refine='flat'.");
   module.def(
       "fit_points",
       [](const py::object& points, const py::object& crs, std::optional<double> max_error,

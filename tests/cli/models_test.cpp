@@ -192,7 +192,8 @@ TEST(Models, LeastSquaresIsNearerThanInterpolation) {
     return outcome.json()["rmse"].get<double>();
   };
   for (const std::string kind : {"--surface linear ", "--surface powell-sabin ", "--surface clough-tocher "}) {
-    const double before = rmse(kind), fitted = rmse(kind + "--fit least-squares"), z_only = rmse(kind + "--fit z-only");
+    const double before = rmse(kind + "--refine flat"), fitted = rmse(kind + "--fit least-squares"),
+                 z_only = rmse(kind + "--fit z-only");
     EXPECT_LT(fitted, 0.9 * before) << kind;
     EXPECT_LT(z_only, 0.95 * before) << kind;
     const Outcome compared = run(folder, "compare dem.asc m.retalho --json");  // read back
@@ -222,6 +223,67 @@ TEST(Models, RefinementBySurfaceIsNearerStill) {
   EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --vertices 60 --refine surface --fit z-only").code, 2);
   EXPECT_EQ(run(folder, "fit dem.asc -o c.retalho --vertices 60 --refine other").code, 2);
   EXPECT_EQ(run(folder, "mesh b.retalho -o b.ply").code, 0);
+}
+
+TEST(Models, ASmoothSurfaceIsRefinedByItsOwnErrorUnlessSomethingSpeaksAgainstIt) {
+  const Folder folder;
+  const auto fit = [&](const std::string& options) {
+    const Outcome outcome = run(folder, "fit dem.asc -o m.retalho --overwrite --json --vertices 60 " + options);
+    EXPECT_EQ(outcome.code, 0) << options << outcome.err;
+    return bytes_of(folder / "m.retalho");
+  };
+  const std::string refined = fit("--refine surface"), flat = fit("--refine flat");
+  EXPECT_EQ(fit(""), refined);
+  EXPECT_EQ(fit("--effort normal"), refined);
+  EXPECT_NE(flat, refined);
+  EXPECT_EQ(fit("--gradients normals"), flat);
+  EXPECT_EQ(fit("--fit interpolate"), flat);
+  EXPECT_EQ(fit("--surface linear"), fit("--surface linear --refine flat"));
+  EXPECT_NE(fit("--surface linear --effort fast"), fit("--surface linear --refine flat"));
+  for (const std::string options : {"-o e.retalho", "-o f.retalho --refine flat"})
+    ASSERT_EQ(run(folder, "fit dem.asc --max-error 0 " + options).code, 0);  // every cell: nothing to choose
+  EXPECT_EQ(bytes_of(folder / "e.retalho"), bytes_of(folder / "f.retalho"));
+  const Outcome within = run(folder, "fit dem.asc -o w.retalho --json --max-error 2");
+  EXPECT_EQ(within.json()["violations"], 0);
+}
+
+TEST(Models, MoreEffortIsNearer) {
+  const Folder folder;
+  std::vector<double> rmse;
+  for (const std::string effort : {"fast", "normal", "best"}) {
+    const Outcome outcome = run(folder, "fit dem.asc -o m.retalho --overwrite --json --vertices 60 --effort " + effort);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    rmse.push_back(outcome.json()["rmse"].get<double>());
+  }
+  EXPECT_LT(rmse[1], 0.97 * rmse[0]);
+  EXPECT_LT(rmse[2], rmse[1]);
+  for (const std::string options : {"--effort slow", "--effort best --refine flat", "--effort best --fit z-only",
+                                    "--effort fast --gradients normals", "--effort fast --max-error 0"})
+    EXPECT_EQ(run(folder, "fit dem.asc -o n.retalho " + options).code, 2) << options;
+  EXPECT_FALSE(std::filesystem::exists(folder / "n.retalho"));
+}
+
+TEST(Models, BaselinesHaveTheNumbersOrTheBytesOfTheirModel) {
+  const Folder folder;
+  for (const std::string form : {"exact", "compact"}) {
+    ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --overwrite --vertices 90 --format " + form).code, 0);
+    const Outcome outcome = run(folder, "compare dem.asc m.retalho --baselines --json");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto models = outcome.json()["models"];
+    ASSERT_EQ(models.size(), 5U);
+    for (std::size_t k : {1U, 3U}) {  // of its numbers, then of its bytes
+      EXPECT_EQ(models[k]["surface"], "linear");
+      EXPECT_EQ(models[k]["numbers"], models[0]["numbers"]);
+      const double ratio = models[k + 1]["bytes"].get<double>() / models[0]["bytes"].get<double>();
+      EXPECT_NEAR(ratio, 1, 0.05) << form;
+    }
+    EXPECT_LT(models[3]["rmse"].get<double>(), models[1]["rmse"].get<double>()) << form;  // the strong one is strong
+  }
+  const auto kinds = run(folder, "compare dem.asc --vertices 100 --baselines --json").json()["models"];
+  ASSERT_EQ(kinds.size(), 18U);
+  EXPECT_EQ(kinds[13]["name"], "strong linear");
+  EXPECT_EQ(kinds[14]["numbers"], kinds[13]["numbers"]);
+  EXPECT_EQ(run(folder, "compare dem.asc m.retalho --baselines --visibility 100").code, 2);
 }
 
 TEST(Models, SurveyPointsBecomeASurfaceToo) {

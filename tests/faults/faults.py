@@ -50,7 +50,7 @@ def inputs(program, folder):
     for name in ["patches/octant.json", "tetraquads/sphere.json", "curves/bspline.json"]:
         shutil.copy(ROOT / "examples" / name, folder)
     for words in [["fit", "grid.asc", "-o", "terrain.retalho", "--max-error", "0"],
-                  ["fit", "large.asc", "-o", "large.retalho", "--max-error", "0.01"]]:
+                  ["fit", "large.asc", "-o", "large.retalho", "--max-error", "0.01", "--refine", "flat"]]:
         subprocess.run([program, *words, "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
 
 
@@ -279,7 +279,7 @@ def long_work(options, stock):
     """SIGINT and SIGTERM in the middle of work that takes seconds."""
     failures = []
     for name, words in {
-        "fit": ["fit", "large.asc", "-o", "o.retalho", "--max-error", "0.0001"],
+        "fit": ["fit", "large.asc", "-o", "o.retalho", "--max-error", "0.0001", "--refine", "flat"],
         "fit-smooth": ["fit", "large.asc", "-o", "o.retalho", "--refine", "surface", "--max-error", "0.001"],
         "contour": ["contour", "large.asc", "-o", "o.gpkg", "--interval", "0.02"],
         "viewshed": ["viewshed", "large.asc", "-o", "o.tif", "--intervisibility"],

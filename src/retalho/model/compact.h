@@ -8,6 +8,7 @@
 
 #include "retalho/core/context.h"
 #include "retalho/raster/raster.h"
+#include "retalho/terrain/surface_refine.h"
 #include "retalho/terrain/terrain.h"
 
 namespace retalho {
@@ -19,6 +20,7 @@ struct CompactOptions {
   std::size_t vertices = 0;   ///< the budget, 0: none. With a budget and max_error the error may be larger
   double height_step = 0;     ///< 0: chosen, by max_error or else by the fit's own error
   double slope_weight = 0;    ///< as in LeastSquaresOptions
+  Effort effort = Effort::normal;  ///< of the refinement
 };
 
 struct CompactModel {

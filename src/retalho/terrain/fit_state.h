@@ -46,19 +46,18 @@ struct FitState {
   bool remove(std::uint32_t vertex);
 };
 
-/// What can be put back.
+/// What can be put back. The elements, most of a state's bytes, are not kept: they follow from the rest.
 struct FitSnapshot {
   CellMesh mesh;
   std::vector<Vec3> data;
   std::vector<std::uint8_t> pinned;
-  std::vector<FitElement> elements;
 
-  explicit FitSnapshot(const FitState& s) : mesh(s.mesh), data(s.data), pinned(s.pinned), elements(s.elements) {}
-  void restore(FitState& s) const {
+  explicit FitSnapshot(const FitState& s) : mesh(s.mesh), data(s.data), pinned(s.pinned) {}
+  void restore(FitState& s, const Context& context) const {
     s.mesh = mesh;
     s.data = data;
     s.pinned = pinned;
-    s.elements = elements;
+    s.refresh(context, true);
   }
 };
 

@@ -216,7 +216,7 @@ bool relocate(FitState& state, double reach, const CgLimits& limits, const Conte
   state.refresh(context);
   state.solve(limits, context);
   if (state.cost(context) < cost_before) return true;
-  before.restore(state);
+  before.restore(state, context);
   return false;
 }
 

@@ -57,6 +57,17 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
 
 }  // namespace
 
+RefineRounds rounds_of(Effort effort) {
+  switch (effort) {
+    case Effort::fast:
+      return {0, 0};
+    case Effort::best:
+      return {5, 25};
+    default:
+      return {SurfaceRefineOptions{}.relocations, SurfaceRefineOptions{}.exchanges};
+  }
+}
+
 void better(FitState& state, int relocations, int exchanges, const Context& context) {
   constexpr double kExchanged = 0.05;  // of the vertices a round
   double reach = 0.35, share = kExchanged;
@@ -72,7 +83,7 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
     exchange(state, share, kRoughSolve, context);
     sweep(relocations + k);  // judged together: new vertices are not yet at their best places
     if (state.cost(context) < cost) continue;
-    before.restore(state);
+    before.restore(state, context);
     share /= 2;
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "retalho/core/context.h"
 #include "retalho/raster/raster.h"
@@ -10,12 +11,21 @@
 
 namespace retalho {
 
+/// How long the vertices are moved about: none of it, some, or much. What it costs: docs/smooth.md.
+enum class Effort : std::uint8_t { fast, normal, best };
+
+/// What an effort is: sweeps of relocation, then rounds of exchange.
+struct RefineRounds {
+  int relocations, exchanges;
+};
+RefineRounds rounds_of(Effort effort);
+
 struct SurfaceRefineOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
   double max_error = 0;       ///< height units: every valid cell within it of the surface; 0: only the budget counts
   std::size_t vertices = 0;   ///< the budget, 0: none; with both, whichever comes first. At least the corners of the
                               ///< valid cells' box are vertices
-  int relocations = 3;        ///< sweeps of relocation after the last vertex
+  int relocations = 3;        ///< sweeps of relocation after the last vertex (Effort::normal)
   int exchanges = 5;          ///< rounds of removal and re-insertion, each followed by a relocation
   double growth = 0.25;       ///< of the number of vertices a round
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions
