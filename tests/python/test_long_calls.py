@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 import time
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -17,7 +18,8 @@ def rough(size: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     return np.random.default_rng(0).normal(size=(size, size))
 
 
-def test_progress_runs_to_the_end_of_every_stage() -> None:
+@pytest.mark.parametrize("refine", ["flat", "surface"])
+def test_progress_runs_to_the_end_of_every_stage(refine: Literal["flat", "surface"]) -> None:
     events: list[tuple[str, float]] = []
     here = threading.current_thread()
     threads = set()
@@ -26,7 +28,7 @@ def test_progress_runs_to_the_end_of_every_stage() -> None:
         events.append((stage, fraction))
         threads.add(threading.current_thread())
 
-    retalho.fit(rough(900), max_error=0.5, progress=note)
+    retalho.fit(rough(900) if refine == "flat" else hills(90, 110), max_error=0.5, refine=refine, progress=note)
     assert events and threads == {here}
     assert all(0 <= fraction <= 1 for _, fraction in events)
     by_stage: dict[str, list[float]] = {}
@@ -76,7 +78,7 @@ def test_other_threads_run_meanwhile() -> None:
 
 
 def test_a_model_may_be_asked_from_several_threads() -> None:
-    model = retalho.fit(rough(300), max_error=0.5)
+    model = retalho.fit(rough(300), max_error=0.5, refine="flat")
     x, y = np.random.default_rng(1).uniform(0, 299, (2, 20000))
     answers: list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]] = []
     workers = [threading.Thread(target=lambda: answers.append(model(x, -y))) for _ in range(6)]

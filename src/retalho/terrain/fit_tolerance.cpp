@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/fit_moves.h"
@@ -41,11 +42,20 @@ class Refinement {
     }
     hold_violating_cells();
     s_.solve(kFinalSolve, context_);
+    report("tolerance", 1);
   }
 
   bool over_budget() const { return options_.vertices != 0 && s_.mesh.vertex_count() >= options_.vertices; }
 
  private:
+  /// Fractions that depend on what is left fall back now and then: not so what is told.
+  void report(const char* stage, double fraction) {
+    if (stage != stage_) told_ = 0;
+    stage_ = stage;
+    told_ = std::max(told_, fraction);
+    context_.report(stage, told_);
+  }
+
   std::size_t room() const {
     return options_.vertices == 0 ? s_.grid.z.size()
                                   : options_.vertices - std::min(options_.vertices, s_.mesh.vertex_count());
@@ -82,7 +92,7 @@ class Refinement {
       context_.check();
       const std::vector<std::uint32_t> list = violating(scan());
       const double share = static_cast<double>(list.size()) / static_cast<double>(s_.mesh.triangle_count());
-      context_.report("refine", std::min(1.0, kFewViolate / std::max(share, 1e-9)));
+      report("refine", std::min(1.0, kFewViolate / std::max(share, 1e-9)));
       if (share < kFewViolate) return;
       const auto round = std::max<std::size_t>(
           1, static_cast<std::size_t>(options_.growth * static_cast<double>(s_.mesh.vertex_count())));
@@ -99,7 +109,7 @@ class Refinement {
         s_.solve(kRoughSolve, context_);
       }
       const std::vector<std::uint32_t> list = violating(scan());
-      context_.report("tolerance", 1.0 / (1.0 + static_cast<double>(list.size())));
+      report("tolerance", 1.0 / (1.0 + static_cast<double>(list.size())));
       if (list.empty() || room() == 0) return;
       const auto count = static_cast<std::size_t>(std::ceil(kWorst * static_cast<double>(list.size())));
       if (insert_in(s_, list, std::min(count, room()), context_) == 0) return;
@@ -146,6 +156,8 @@ class Refinement {
   const Context& context_;
   double goal_ = 0;
   bool started_ = false;
+  std::string_view stage_;
+  double told_ = 0;
 };
 
 }  // namespace

@@ -53,6 +53,7 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
     state.solve(kRoughSolve, context);
     context.report("refine", static_cast<double>(n) / static_cast<double>(vertices));
   }
+  context.report("refine", 1);
 }
 
 }  // namespace
@@ -86,6 +87,7 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
     before.restore(state, context);
     share /= 2;
   }
+  if (relocations + exchanges > 0) context.report("relocate", 1);
 }
 
 Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
