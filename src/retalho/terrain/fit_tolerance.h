@@ -7,7 +7,7 @@
 
 namespace retalho {
 
-inline constexpr CgLimits kRoughSolve{1e-5, 60}, kFinalSolve{1e-8, 1000};
+inline constexpr CgLimits kRoughSolve{1e-5, 60}, kFinalSolve{1e-11, 1000};
 
 /// Sweeps of relocation, then exchanges each with a sweep.
 void better(FitState& state, int relocations, int exchanges, const Context& context);
