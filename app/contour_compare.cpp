@@ -83,7 +83,7 @@ std::vector<std::string> compare_grid_surfaces(const Program& program, const Ras
   };
   for (const Twist twist : {Twist::spline, Twist::adini, Twist::zero})
     bicubic(fmt::format("bicubic, twist {}", twist_name(twist)), {.twist = twist});
-  bicubic("bicubic, natural ends", {.ends = SplineEnds::natural});
+  bicubic("bicubic, natural ends", {.ends = TangentEnds::natural});
   bicubic("bicubic, ringing", {.keep_flats = false});
   return draw(program, all, extent_of(raster), comparison);
 }

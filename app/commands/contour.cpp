@@ -8,6 +8,7 @@
 
 #include "breaklines.h"
 #include "contour_compare.h"
+#include "contour_conics.h"
 #include "contour_map.h"
 #include "fitting.h"
 #include "inputs.h"
@@ -30,7 +31,7 @@ struct Options {
   std::string input, output, levels, surface, twist = "spline", ends = "not-a-knot";
   double interval = 0, base = 0, tolerance = 0;
   int index_every = 5;
-  bool bands = false, ring = false, raw = false;
+  bool bands = false, ring = false, raw = false, conics = false;
   SheetFlags sheet;
   std::string compare;
   int zoom = 48;
@@ -97,7 +98,7 @@ Surface load_surface(const Program& program, const Options& options, const Conte
       throw UsageError("--surface bicubic takes every cell: --max-error, --vertices and --ratio are for the others", {},
                        "--surface");
     surface.bicubic = make_bicubic(raster,
-                                   {.ends = static_cast<SplineEnds>(choose("--ends", options.ends, kEnds)),
+                                   {.ends = static_cast<TangentEnds>(choose("--ends", options.ends, kEnds)),
                                     .twist = *parse_twist(kTwists[choose("--twist", options.twist, kTwists)]),
                                     .keep_flats = !options.ring},
                                    context);
@@ -187,8 +188,17 @@ nlohmann::ordered_json singular_json(const ContourSet& set, const Georef& georef
   return list;
 }
 
+void check_conics(const Options& options) {
+  if (!options.conics) return;
+  if (!options.output.ends_with(".json"))
+    throw UsageError("--conics writes curves (docs/curve.schema.json): name a .json file", {}, "--conics");
+  if (options.bands || options.raw || options.tolerance > 0)
+    throw UsageError("--conics gives exact lines: --bands, --raw and --tolerance are for polylines", {}, "--conics");
+}
+
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
+  check_conics(options);
   if ((options.interval > 0) == !options.levels.empty())
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
   if (options.output.empty() && options.compare.empty())
@@ -211,6 +221,12 @@ void run(const Program& program, const Options& options) {
     }
   }
   Surface surface = load_surface(program, options, context);
+  if (options.conics) {
+    if (!surface.terrain)
+      throw UsageError("--conics is for Powell-Sabin surfaces: --surface powell-sabin, or such a model", {},
+                       "--conics");
+    return write_conics(program, *surface.terrain, levels_of(options, surface), options.output, context);
+  }
   ContourOptions contour;
   contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
   if (!(options.tolerance > 0))
@@ -302,6 +318,7 @@ void add_contour(CLI::App& root, Program& program) {
                   "retalho contour dem.tif --interval 20 --compare-surfaces choose.png\n"
                   "retalho contour model.retalho -o lines.geojson --interval 10\n"
                   "retalho contour survey.csv -o lines.gpkg --interval 0.5 --breaklines kerbs.gpkg\n"
+                  "retalho contour survey.csv -o exact.json --interval 5 --surface powell-sabin --conics\n"
                   "retalho contour dem.tif -o map.pdf --interval 20 --bands --curves --title 'Jacksboro' --sheet A3\n"
                   "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
   command->add_option("INPUT", options->input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
@@ -333,6 +350,8 @@ void add_contour(CLI::App& root, Program& program) {
   command->add_flag("--bands", options->bands,
                     "Polygons between the levels instead of lines; on a map sheet, tints beneath them");
   command->add_flag("--raw", options->raw, "Keep every traced vertex");
+  command->add_flag("--conics", options->conics,
+                    "Of a Powell-Sabin surface: the exact lines, as rational quadratic curves in a .json of curves");
   command
       ->add_option("--index-every", options->index_every,
                    "Every so many levels is an index contour (default 5; 0: none)")

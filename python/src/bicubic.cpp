@@ -50,7 +50,7 @@ BicubicOptions bicubic_options(const std::string& twist, const std::string& ends
   if (!twisted) throw UsageError("twist must be 'spline', 'adini' or 'zero', not '" + twist + "'", {}, "twist");
   if (ends != "not-a-knot" && ends != "natural")
     throw UsageError("ends must be 'not-a-knot' or 'natural', not '" + ends + "'", {}, "ends");
-  return {ends == "natural" ? SplineEnds::natural : SplineEnds::not_a_knot, *twisted, keep_flats};
+  return {ends == "natural" ? TangentEnds::natural : TangentEnds::not_a_knot, *twisted, keep_flats};
 }
 
 void add_bicubic(py::module_& module) {

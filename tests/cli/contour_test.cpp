@@ -81,6 +81,43 @@ TEST(Contour, ModelsAndPointsToo) {
   EXPECT_GT(outcome.json()["lines"].get<int>(), 0);
 }
 
+TEST(Contour, ConicsOfPowellSabinSurfaces) {
+  const Hills folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m.retalho --max-error 2 --surface powell-sabin").code, 0);
+  const Outcome outcome = run(folder, "contour m.retalho -o exact.json --interval 20 --conics --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome lines = run(folder, "contour m.retalho -o lines.geojson --interval 20 --json");
+  EXPECT_EQ(outcome.json()["lines"], lines.json()["lines"]);
+  EXPECT_EQ(outcome.json()["closed_lines"], lines.json()["closed_lines"]);
+  EXPECT_GT(outcome.json()["conics"].get<int>(), outcome.json()["lines"].get<int>());
+  // They are curves as any other.
+  EXPECT_EQ(run(folder, "curve exact.json -o exact.svg").code, 0);
+  const std::size_t before = folder.entries();
+  EXPECT_EQ(run(folder, "contour m.retalho -o x.gpkg --interval 20 --conics").code, 2);
+  EXPECT_EQ(run(folder, "contour m.retalho -o x.json --interval 20 --conics --bands").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.json --interval 20 --conics").code, 2);
+  EXPECT_EQ(run(folder, "contour dem.asc -o x.json --interval 20 --conics --max-error 2 --surface clough-tocher").code,
+            3);
+  EXPECT_EQ(folder.entries(), before);
+}
+
+TEST(Contour, BandsOfModelsWithVoids) {
+  const Hills folder;
+  folder.put("holes.asc", ascii_grid(40, 30, [](int c, int r) {
+               return c > 15 && c < 20 && r > 9 && r < 14 ? -9999.0 : hills(c, r);
+             }));
+  ASSERT_EQ(run(folder, "fit holes.asc -o m.retalho --max-error 2").code, 0);
+  ASSERT_EQ(run(folder, "contour m.retalho -o bands.gpkg --interval 20 --bands").code, 0);
+  const Dataset data = open((folder.path() / "bands.gpkg").string());
+  ASSERT_NE(data, nullptr);
+  double area = 0;
+  for (const auto& feature : data->GetLayer(0)) {
+    EXPECT_TRUE(feature->GetGeometryRef()->IsValid());
+    area += feature->GetGeometryRef()->toPolygon()->get_Area();
+  }
+  EXPECT_NEAR(area, (39 * 29 - 16) * 100, 1e-6);
+}
+
 TEST(Contour, BreaklinesOfSurveys) {
   const ScratchFolder folder;
   std::string csv = "x,y,z\n";

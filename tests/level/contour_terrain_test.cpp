@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "level/contour_support.h"
+#include "retalho/core/error.h"
+#include "retalho/level/conics.h"
 #include "retalho/level/contour.h"
 #include "retalho/terrain/creases.h"
 #include "retalho/terrain/evaluate.h"
@@ -135,6 +137,75 @@ TEST(TerrainContours, TheSameBytesFromAnyNumberOfThreads) {
   const ContourSet many = trace_contours(t, levels, {.tolerance = 0.001}, {.threads = 3});
   EXPECT_TRUE(one.points == many.points);
   EXPECT_EQ(one.lines.size(), many.lines.size());
+}
+
+TEST(Conics, LieOnTheSurfaceAndAreTheSameLines) {
+  test::Random random;
+  for (int round = 0; round < 20; ++round) {
+    const Terrain t =
+        round % 3 == 2 ? folded(SurfaceKind::powell_sabin, 7, random) : wild(SurfaceKind::powell_sabin, 7, random);
+    const std::vector<double> levels = contour_levels(-20, 30, 1.3);
+    const ConicSet set = trace_conics(t, levels);
+    const ContourSet lines = trace_contours(t, levels, {.tolerance = 1e-4, .simplify = false});
+    ASSERT_EQ(set.lines.size(), lines.lines.size());
+    const TerrainEvaluator surface(t);
+    std::vector<double> length(levels.size(), 0), traced(levels.size(), 0);
+    std::size_t closed = 0, closed_traced = 0;
+    for (const ConicLine& line : set.lines) {
+      closed += line.curve.closed ? 1 : 0;
+      for (std::size_t i = 0; i < line.curve.segment_count(); ++i) {
+        const CurveSegment s = line.curve.segment(i);
+        Vec3 before = s.points[0];
+        for (int k = 1; k <= 64; ++k) {
+          const Vec3 p = evaluate(s, k / 64.0);
+          if (k % 16 == 8) {
+            // A gradient here is 1e3, and so is what one quantum of an ordinate may weigh.
+            EXPECT_NEAR(surface.value({p.x, p.y}), levels[static_cast<std::size_t>(line.level)],
+                        40 * set.height_quantum);
+          }
+          length[static_cast<std::size_t>(line.level)] += norm(p - before);
+          before = p;
+        }
+        if (i > 0) {
+          EXPECT_EQ(s.points[0], line.curve.segment(i - 1).points[2]);
+        }
+      }
+    }
+    for (const ContourLine& line : lines.lines) closed_traced += line.closed ? 1 : 0;
+    for (const test::Segment& s : test::segments(lines)) traced[static_cast<std::size_t>(s.level)] += norm(s.b - s.a);
+    EXPECT_EQ(closed, closed_traced);
+    for (std::size_t k = 0; k < levels.size(); ++k) EXPECT_NEAR(length[k], traced[k], 0.002 * traced[k] + 1e-3);
+  }
+}
+
+TEST(Conics, OfAParaboloidAreCircles) {
+  // Powell-Sabin surfaces reproduce quadratic polynomials.
+  Terrain t;
+  t.kind = SurfaceKind::powell_sabin;
+  t.tin = test::delaunay(test::jittered_points(9, 5), [](Vec2 p) { return norm2(p - Vec2{0.5, 0.5}); });
+  for (const Vec2 p : t.tin.points) t.gradients.push_back(2 * (p - Vec2{0.5, 0.5}));
+  t.edge_split = powell_sabin_splits(t.tin, build_edges(t.tin));
+  const ConicSet set = trace_conics(t, {0.01, 0.04, 0.16});
+  ASSERT_EQ(set.lines.size(), 3U);
+  for (const ConicLine& line : set.lines) {
+    EXPECT_TRUE(line.curve.closed);
+    for (std::size_t i = 0; i < line.curve.segment_count(); ++i)
+      for (int k = 0; k <= 8; ++k) {
+        const Vec3 p = evaluate(line.curve.segment(i), k / 8.0);
+        EXPECT_NEAR(norm(Vec2{p.x, p.y} - Vec2{0.5, 0.5}), std::sqrt(set.levels[static_cast<std::size_t>(line.level)]),
+                    50 * set.height_quantum);
+      }
+  }
+}
+
+TEST(Conics, RefuseOtherSurfacesAndVoids) {
+  test::Random random;
+  EXPECT_THROW(trace_conics(wild(SurfaceKind::clough_tocher, 4, random), {5}), BadInput);
+  Terrain t = wild(SurfaceKind::powell_sabin, 4, random);
+  EXPECT_THROW(trace_conics(t, {5, 5}), BadInput);
+  t.grid = {2, 2, 1, 1, Mask(2, 2, true)};
+  t.grid.valid.set(1, 1, false);
+  EXPECT_THROW(trace_conics(t, {5}), BadInput);
 }
 
 }  // namespace

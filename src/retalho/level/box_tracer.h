@@ -218,6 +218,12 @@ class BoxTracer {
       const Vec2 q = Patch::clamp(box.frame.parameters(trace_.points[end]));
       Work w{level, static_cast<double>(threshold<I>(level, box.scale)),
              2 * levels_.tube(level) * static_cast<double>(box.scale), certificate, start};
+      if constexpr (Patch::kDegree == 2)
+        if (trace_.keep_conics) {
+          conic(box.frame, w, p, q, 24);
+          trace_.next[w.last] = end;
+          return true;
+        }
       const double need = second_.chord_bound(q - p);
       // Both ends on one side: the chord would lie on that side, perhaps on the neighbour's chord.
       if (found_side_[0] == found_side_[1]) w.tube = std::min(w.tube, 0.5 * need);
@@ -273,6 +279,43 @@ class BoxTracer {
       }
       from = to;
     }
+  }
+
+  /// The arc from p to q as conics, each of which turns by less than 60 degrees. In the triangle of its ends and of the
+  /// place where its tangents meet, the polynomial less the level has three ordinates that vanish at the ends; the two
+  /// others give the weight (docs/contours.md, "Exact lines").
+  void conic(const Frame& frame, Work& work, Vec2 p, Vec2 q, int depth) {
+    double f = 0;
+    Vec2 at_p, at_q, at_middle;
+    Patch::evaluate(net_, p, f, at_p);
+    Patch::evaluate(net_, q, f, at_q);
+    const Vec2 up_p = frame.gradient(at_p), up_q = frame.gradient(at_q);
+    const Vec2 middle = 0.5 * (p + q);
+    if (depth > 0 && dot(up_p, up_q) < 0.5 * norm(up_p) * norm(up_q)) {
+      const Vec2 between = on_line(work, middle, work.certificate.m);
+      conic(frame, work, p, between, depth - 1);
+      const std::uint32_t id = trace_.add(frame.place(between), work.level);
+      trace_.next[work.last] = id;
+      work.last = id;
+      conic(frame, work, between, q, depth - 1);
+      return;
+    }
+    Patch::evaluate(net_, middle, f, at_middle);
+    const double sag = f - work.threshold;
+    const Vec2 chord = frame.place(q) - frame.place(p), up = frame.gradient(at_middle);
+    ConicLink& link = trace_.conics[work.last];
+    // Where the arc is straight but for rounding, its tangents say nothing: a parabola through its middle.
+    link = {frame.place(middle) - 2 * sag / dot(up, up) * up, 1};
+    if (!(std::abs(sag) > 1e-7 * norm(up) * norm(chord))) {
+      if (!std::isfinite(link.control.x + link.control.y)) link.control = frame.place(middle);
+      return;
+    }
+    const Vec2 along_p{-at_p.y, at_p.x}, along_q{-at_q.y, at_q.x};
+    const Vec2 control = p + cross(q - p, along_q) / cross(along_p, along_q) * along_p;
+    double at_control = 0;
+    Patch::evaluate(net_, control, at_control, at_middle);
+    const double square = -sag / (at_control - work.threshold);
+    if (square > 0 && std::isfinite(square)) link = {frame.place(control), std::sqrt(square)};
   }
 
   /// The point of the line on start + s d, sought inside the box only.

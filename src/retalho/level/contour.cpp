@@ -21,10 +21,7 @@ namespace {
 void check(const std::vector<double>& levels, const ContourOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw BadInput(fmt::format("the tolerance of contour lines must be a positive number, not {}", options.tolerance));
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    if (!std::isfinite(levels[k])) throw BadInput("a contour level is not a finite number");
-    if (k > 0 && !(levels[k] > levels[k - 1])) throw BadInput("contour levels must ascend, each given once");
-  }
+  check_levels(levels);
 }
 
 /// Copies lines out of the trace; of equal consecutive points one stays.
@@ -92,6 +89,13 @@ ContourSet trace_fixed(const FixedGrid& fixed, std::vector<double> levels, const
 }
 
 }  // namespace
+
+void check_levels(const std::vector<double>& levels) {
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    if (!std::isfinite(levels[k])) throw BadInput("a contour level is not a finite number");
+    if (k > 0 && !(levels[k] > levels[k - 1])) throw BadInput("contour levels must ascend, each given once");
+  }
+}
 
 std::vector<double> contour_levels(double low, double high, double interval, double base) {
   if (!(interval > 0) || !std::isfinite(interval) || !std::isfinite(base))

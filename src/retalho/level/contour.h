@@ -39,6 +39,9 @@ struct ContourExtras {
 /// gives more than a million levels.
 std::vector<double> contour_levels(double low, double high, double interval, double base = 0);
 
+/// Throws BadInput unless the levels are finite and ascend, each given once.
+void check_levels(const std::vector<double>& levels);
+
 /// Lines of all `levels` (ascending, different, finite). Throws BadInput for a tolerance that is not positive, and for
 /// levels closer than the surface's quantum. Cost: docs/contours.md, "Cost"; it grows with cells and with traced
 /// vertices, memory too. The same bytes from any number of threads.

@@ -16,12 +16,15 @@ struct Frame {
     const double det = cross(e1, e2);
     return {cross(d, e2) / det, cross(e1, d) / det};
   }
+  /// The local gradient with these parameter derivatives.
+  Vec2 gradient(Vec2 derivatives) const {
+    const double det = cross(e1, e2);
+    return {(derivatives.x * e2.y - derivatives.y * e1.y) / det, (derivatives.y * e1.x - derivatives.x * e2.x) / det};
+  }
   /// The parameter direction whose image is the unit vector along the gradient with these parameter derivatives; (0, 0)
   /// for no gradient.
   Vec2 uphill(Vec2 derivatives) const {
-    const double det = cross(e1, e2);
-    const Vec2 g{(derivatives.x * e2.y - derivatives.y * e1.y) / det,
-                 (derivatives.y * e1.x - derivatives.x * e2.x) / det};
+    const Vec2 g = gradient(derivatives);
     const double length = norm(g);
     if (!(length > 0) || !std::isfinite(length)) return {};
     return direction(g / length);

@@ -19,12 +19,20 @@ struct EdgeRoot {
   std::uint32_t point;
 };
 
+/// The level line from a point to the next as a rational quadratic curve with weights 1, `weight`, 1.
+struct ConicLink {
+  Vec2 control;
+  double weight = 0;  ///< 0: a straight link, by rule
+};
+
 /// High ground lies to the left of point -> next[point], in local coordinates.
 struct Trace {
   std::vector<Vec2> points;
   std::vector<std::uint32_t> next;
   std::vector<std::int32_t> level;
   std::vector<std::uint32_t> cell;  ///< the triangle that the point lies in; empty for grids
+  bool keep_conics = false;         ///< pieces of degree 2: arcs are left whole, as conics
+  std::vector<ConicLink> conics;    ///< of point -> next[point], where asked for
   std::vector<SingularPlace> singular;
   std::size_t pairs = 0, certified = 0, boxes = 0, undecided_edges = 0;
   int depth = 0;
@@ -33,6 +41,7 @@ struct Trace {
     points.push_back(p);
     next.push_back(kNoPoint);
     level.push_back(of_level);
+    if (keep_conics) conics.emplace_back();
     return static_cast<std::uint32_t>(points.size() - 1);
   }
   /// A stretch of an edge, from a to b, on which the roots could not be told apart.

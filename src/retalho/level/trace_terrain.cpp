@@ -206,7 +206,10 @@ void append(Trace& all, PieceChunk& chunk) {
     all.cell.push_back(c.cell[i]);
   }
   for (std::size_t i = 0; i < joined.size(); ++i)
-    if (c.next[i] != kNoPoint) all.next[joined[i]] = joined[c.next[i]];
+    if (c.next[i] != kNoPoint) {
+      all.next[joined[i]] = joined[c.next[i]];
+      if (all.keep_conics) all.conics[joined[i]] = c.conics[i];
+    }
   all.singular.insert(all.singular.end(), c.singular.begin(), c.singular.end());
   all.pairs += c.pairs;
   all.certified += c.certified;
@@ -218,11 +221,14 @@ void append(Trace& all, PieceChunk& chunk) {
 
 template <SurfaceKind Kind>
 Trace trace_kind(const Terrain& terrain, const EdgeTable& edges, double per_unit, const FixedLevels& levels,
-                 double tolerance, OuterRoots& outer, const Context& context) {
+                 double tolerance, OuterRoots& outer, const Context& context, bool conics) {
   Trace all = trace_edges<Kind>(terrain, edges, per_unit, levels, outer, context);
+  all.keep_conics = conics;
+  if (conics) all.conics.resize(all.points.size());
   const std::size_t triangles = terrain.tin.triangle_count();
   std::vector<PieceChunk> chunks(chunk_count(triangles));
   parallel_chunks(triangles, kGrain, context, [&](std::size_t from, std::size_t to) {
+    chunks[from / kGrain].trace.keep_conics = conics;
     ChunkTracer<Kind> tracer(terrain, edges, levels, tolerance, all, outer, chunks[from / kGrain]);
     for (auto t = static_cast<std::uint32_t>(from); t < to; ++t) tracer.trace(t, per_unit);
   });
@@ -254,16 +260,17 @@ double terrain_quanta(const Terrain& terrain, const EdgeTable& edges, const Cont
 }
 
 Trace trace_terrain(const Terrain& terrain, const EdgeTable& edges, double per_unit, const FixedLevels& levels,
-                    double tolerance, OuterRoots& outer, const Context& context) {
+                    double tolerance, OuterRoots& outer, const Context& context, bool conics) {
   switch (terrain.kind) {
     case SurfaceKind::powell_sabin:
-      return trace_kind<SurfaceKind::powell_sabin>(terrain, edges, per_unit, levels, tolerance, outer, context);
+      return trace_kind<SurfaceKind::powell_sabin>(terrain, edges, per_unit, levels, tolerance, outer, context, conics);
     case SurfaceKind::clough_tocher:
-      return trace_kind<SurfaceKind::clough_tocher>(terrain, edges, per_unit, levels, tolerance, outer, context);
+      return trace_kind<SurfaceKind::clough_tocher>(terrain, edges, per_unit, levels, tolerance, outer, context,
+                                                    conics);
     case SurfaceKind::linear:
       break;
   }
-  return trace_kind<SurfaceKind::linear>(terrain, edges, per_unit, levels, tolerance, outer, context);
+  return trace_kind<SurfaceKind::linear>(terrain, edges, per_unit, levels, tolerance, outer, context, conics);
 }
 
 }  // namespace retalho

@@ -23,8 +23,9 @@ struct OuterRoots {
 };
 
 /// Ordinates are rounded one by one, so neighbours see the same integers on a shared edge. Trace::cell holds the
-/// triangle of each point. The order of points depends on the terrain alone.
+/// triangle of each point. The order of points depends on the terrain alone. `conics`: of a Powell-Sabin surface, arcs
+/// are left whole, and Trace::conics holds them; the tolerance is not used then.
 Trace trace_terrain(const Terrain& terrain, const EdgeTable& edges, double per_unit, const FixedLevels& levels,
-                    double tolerance, OuterRoots& outer, const Context& context);
+                    double tolerance, OuterRoots& outer, const Context& context, bool conics = false);
 
 }  // namespace retalho

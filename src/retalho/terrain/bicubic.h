@@ -16,7 +16,7 @@
 
 namespace retalho {
 
-enum class SplineEnds { not_a_knot, natural };
+enum class TangentEnds { not_a_knot, natural };
 /// How the mixed derivative of each sample is set.
 enum class Twist {
   zero,    ///< the paper's; second order only, does not reproduce z = uv
@@ -25,7 +25,7 @@ enum class Twist {
 };
 
 struct BicubicOptions {
-  SplineEnds ends = SplineEnds::not_a_knot;
+  TangentEnds ends = TangentEnds::not_a_knot;
   Twist twist = Twist::spline;
   /// No slope (and no twist) along a row or column where a neighbour has the very same height, so that lakes and seas
   /// stay flat instead of ringing. Still C1.

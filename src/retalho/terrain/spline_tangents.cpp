@@ -16,11 +16,11 @@ const double kWeight = std::sqrt(3.0) / 2 * (1 - kDecay * kDecay);
 
 /// The tangent at sample `at` of a run of `n` samples, near one of its ends (or both): the tridiagonal system of the
 /// samples that are within kSplineHalo. Beyond a cut that is no end of the run the tangent counts as zero.
-double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, SplineEnds ends) {
+double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, TangentEnds ends) {
   if (n == 1) return 0;
   const auto value = [&](int k) { return z[stride * k]; };
   if (n == 2) return value(1) - value(0);
-  if (n == 3 && ends == SplineEnds::not_a_knot) {
+  if (n == 3 && ends == TangentEnds::not_a_knot) {
     const double middle = (value(2) - value(0)) / 2, bend = value(2) - 2 * value(1) + value(0);
     return at == 1 ? middle : at == 0 ? middle - bend : middle + bend;
   }
@@ -31,7 +31,7 @@ double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, Spl
   // A run that ends exactly kSplineHalo away counts as cut there: what lies behind is not looked at.
   const bool starts = at - first < kSplineHalo, stops = last - at < kSplineHalo;
   if (starts) {
-    if (ends == SplineEnds::not_a_knot) {
+    if (ends == TangentEnds::not_a_knot) {
       upper[0] = 2;
       rest[0] = (-5 * value(0) + 4 * value(1) + value(2)) / 2;
     } else {
@@ -48,7 +48,7 @@ double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, Spl
   double m = 0;
   if (stops) {
     const double before = rest[place(size - 2)], slope = upper[place(size - 2)];
-    if (ends == SplineEnds::not_a_knot) {
+    if (ends == TangentEnds::not_a_knot) {
       const double right = (5 * value(n - 1) - 4 * value(n - 2) - value(n - 3)) / 2;  // m(n-1) + 2 m(n-2)
       m = (right - 2 * before) / (1 - 2 * slope);
     } else {
@@ -77,7 +77,7 @@ void for_each_run(int n, const Valid& valid, const Run& run) {
 
 }  // namespace
 
-void tangents_along_rows(std::span<const double> values, GridShape shape, const Mask& valid, SplineEnds ends,
+void tangents_along_rows(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
                          std::span<double> out, const Context& context) {
   const int columns = shape.columns;
   parallel_chunks(static_cast<std::size_t>(shape.rows), 16, context, [&](std::size_t from, std::size_t to) {
@@ -104,7 +104,7 @@ void tangents_along_rows(std::span<const double> values, GridShape shape, const 
   });
 }
 
-void tangents_along_columns(std::span<const double> values, GridShape shape, const Mask& valid, SplineEnds ends,
+void tangents_along_columns(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
                             std::span<double> out, const Context& context) {
   constexpr int kBlock = 64, kRows = 128;
   const int rows = shape.rows, columns = shape.columns;

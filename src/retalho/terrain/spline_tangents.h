@@ -19,9 +19,9 @@ struct GridShape {
 /// Derivative per cell along each row (or column) of the unbroken runs of valid samples: of one sample 0, of two their
 /// difference, of three their parabola's, else the cubic spline's. Each is a function of the kSplineHalo samples to
 /// both sides alone, rounded alike wherever the samples stand. `valid` empty: all.
-void tangents_along_rows(std::span<const double> values, GridShape shape, const Mask& valid, SplineEnds ends,
+void tangents_along_rows(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
                          std::span<double> out, const Context& context);
-void tangents_along_columns(std::span<const double> values, GridShape shape, const Mask& valid, SplineEnds ends,
+void tangents_along_columns(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
                             std::span<double> out, const Context& context);
 
 }  // namespace retalho

@@ -1,0 +1,49 @@
+#include "retalho/level/conics.h"
+
+#include <array>
+#include <utility>
+
+#include "retalho/core/error.h"
+#include "retalho/level/clip.h"
+#include "retalho/level/contour.h"
+#include "retalho/level/fixed_levels.h"
+#include "retalho/level/lines.h"
+#include "retalho/level/trace_terrain.h"
+
+namespace retalho {
+
+ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const Context& context) {
+  check_levels(levels);
+  if (terrain.kind == SurfaceKind::clough_tocher)
+    throw BadInput("level lines of a Clough-Tocher surface are cubics, not conics: take a Powell-Sabin surface");
+  if (has_voids(terrain.grid))
+    throw BadInput("conics of a model whose grid has cells without data: lines end on cells there, take polylines");
+  const EdgeTable edges = build_edges(terrain.tin);
+  const double per_unit = terrain_quanta(terrain, edges, context);
+  const FixedLevels fixed(levels, per_unit);
+  OuterRoots outer;
+  const Trace trace =
+      trace_terrain(terrain, edges, per_unit, fixed, 1, outer, context, terrain.kind == SurfaceKind::powell_sabin);
+  ConicSet set;
+  set.levels = std::move(levels);
+  set.height_quantum = 1 / per_unit;
+  const auto lift = [](Vec2 p) { return Vec3{p.x, p.y, 0}; };
+  for (const TracedLine& line : find_lines(trace)) {
+    context.check();
+    ConicLine out{line.level, {}};
+    out.curve.closed = line.closed;
+    std::uint32_t p = line.start;
+    const std::uint32_t links = line.closed ? line.count : line.count - 1;
+    for (std::uint32_t i = 0; i < links; ++i, p = trace.next[p]) {
+      const Vec2 a = trace.points[p], b = trace.points[trace.next[p]];
+      if (a == b) continue;
+      ConicLink link = trace.keep_conics ? trace.conics[p] : ConicLink{};
+      if (link.weight == 0) link = {0.5 * (a + b), 1};
+      out.curve.append(std::array{lift(a), lift(link.control), lift(b)}, 1, std::array{1.0, link.weight, 1.0});
+    }
+    if (!out.curve.empty()) set.lines.push_back(std::move(out));
+  }
+  return set;
+}
+
+}  // namespace retalho

@@ -1,0 +1,34 @@
+// Level lines of Powell-Sabin surfaces as what they are: chains of conics, not polylines.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "retalho/core/context.h"
+#include "retalho/curve/curve.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho {
+
+/// One line: rational quadratic segments in local coordinates (the plane), high ground on the left. As with
+/// ContourLine, an open one starts and ends on the border.
+struct ConicLine {
+  int level = 0;  ///< index into the levels
+  Curve curve;
+};
+
+struct ConicSet {
+  std::vector<double> levels;
+  std::vector<ConicLine> lines;  ///< by level, then by where they start; one for each line of trace_contours
+  double height_quantum = 0;     ///< heights were rounded to multiples of this before tracing
+};
+
+/// The lines of all `levels` (ascending, different, finite) of a Powell-Sabin surface. The topology is decided as in
+/// trace_contours; each segment is the level line of one piece of the rounded surface, to the rounding of doubles: none
+/// turns by more than 60 degrees, none lies in two pieces. Lines of a linear surface are segments with straight control
+/// points. Throws BadInput: a Clough-Tocher surface (its lines are cubics), a grid that has cells without data, levels
+/// as in trace_contours. Cost: less than trace_contours, as arcs are not cut. The same bytes from any number of
+/// threads.
+ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const Context& context = {});
+
+}  // namespace retalho
