@@ -70,6 +70,7 @@ ModelPointer Models::fit(const Json& input, const Context& context) {
     model->terrain = std::make_shared<const Terrain>(std::move(terrain));
   }
   model->evaluator = std::make_unique<TerrainEvaluator>(*model->terrain, context);
+  model->bends = measure_bends(*model->evaluator, context);
   model->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   const std::lock_guard lock(mutex_);
   kept_.push_front(model);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "calls.h"
+#include "detail.h"
 #include "input_files.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/report.h"
@@ -20,6 +21,7 @@ struct FittedModel {
   std::shared_ptr<const Raster> grid;  ///< what it is compared with; null for a model file
   std::shared_ptr<const Terrain> terrain;
   std::unique_ptr<TerrainEvaluator> evaluator;
+  SurfaceBends bends;  ///< for the picture's level of detail
   std::optional<ErrorReport> errors;
   double seconds = 0;
 };

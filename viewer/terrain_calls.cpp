@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "detail.h"
 #include "models.h"
 #include "retalho/core/error.h"
 #include "retalho/level/contour.h"
@@ -86,37 +87,42 @@ std::vector<float> edge_lines(const FittedModel& model, Vec3 origin) {
   return lines;
 }
 
-/// The triangulation itself, with the surface's normals at its vertices: what is drawn when there are so many pieces
-/// that cutting them finer is more than the page can hold.
-TriangleMesh vertices_mesh(const Terrain& terrain) {
-  TriangleMesh mesh;
-  for (const auto& t : terrain.tin.triangles) {
-    const Vec2 centre = (terrain.tin.points[t[0]] + terrain.tin.points[t[1]] + terrain.tin.points[t[2]]) / 3;
-    if (terrain.grid.has_data(centre)) mesh.triangles.push_back(t);
+/// {"eye": [x, y, z], "stretch", "angle", "triangles"}: see detail.h. The eye is in the page's coordinates; without one
+/// the surface is seen from straight above and far away, to 1/2000 of its range of heights.
+DetailOptions detail_of(const Json& input, Vec3 origin, HeightRange range) {
+  DetailOptions options;
+  options.budget = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
+  const auto at = input.find("eye");
+  if (at == input.end()) {
+    options.eye = {origin.x, origin.y, kFar};
+    options.angle = std::max(1e-9, (range.high - range.low) / 2000) / kFar;
+    return options;
   }
-  for (std::size_t v = 0; v < terrain.tin.vertex_count(); ++v) {
-    const Vec2 p = terrain.tin.points[v];
-    mesh.positions.push_back({p.x, p.y, terrain.tin.heights[v]});
-    mesh.normals.push_back(unit_normal(terrain.gradients[v]));
-  }
-  return mesh;
+  if (!at->is_array() || at->size() != 3 || !std::all_of(at->begin(), at->end(), [](const Json& v) {
+        return v.is_number() && std::abs(v.get<double>()) < kFar;
+      }))
+    throw BadInput("'eye' must be three numbers", {}, "eye");
+  options.eye = {(*at)[0].get<double>() + origin.x, (*at)[1].get<double>() + origin.y, (*at)[2].get<double>()};
+  options.stretch = number(input, "stretch", 1e-3, 1e3);
+  options.angle = number(input, "angle", 1e-7, 1);
+  return options;
 }
 
-/// As fine as the budget of triangles lets it be, at best within 1/2000 of the range of heights. `tolerance` gets what
-/// was worked to; 0: the triangulation itself.
-TriangleMesh drawn_mesh(const Terrain& terrain, HeightRange range, std::size_t budget, double& tolerance,
-                        const Context& context) {
-  const std::size_t pieces =
-      terrain.tin.triangle_count() * static_cast<std::size_t>(patches_per_triangle(terrain.kind));
-  if (terrain.kind != SurfaceKind::linear && pieces > budget) return vertices_mesh(terrain);
-  tolerance = mesh_tolerance(terrain, {.tolerance = std::max(1e-9, (range.high - range.low) / 2000)});
-  for (;;) {
-    context.check();
-    TriangleMesh mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
-    if (mesh.triangles.size() <= std::max(budget, pieces)) return mesh;
-    // The number of triangles goes with one over the tolerance.
-    tolerance *= std::max(1.5, static_cast<double>(mesh.triangles.size()) / static_cast<double>(budget));
-  }
+/// Positions less the origin, normals and indices.
+std::vector<Array> mesh_arrays(const TriangleMesh& mesh, Vec3 origin) {
+  std::vector<float> positions, normals;
+  positions.reserve(mesh.positions.size() * 3);
+  normals.reserve(mesh.normals.size() * 3);
+  for (const Vec3 p : mesh.positions) push(positions, p, origin);
+  for (const Vec3 n : mesh.normals) push(normals, n, {});
+  std::vector<std::uint32_t> indices;
+  indices.reserve(mesh.triangles.size() * 3);
+  for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  return {make_array("position", positions), make_array("normal", normals), make_array("index", indices)};
+}
+
+Json detail_words(const TriangleMesh& mesh, const DetailNotes& notes) {
+  return {{"triangles", mesh.triangles.size()}, {"angle", notes.angle}, {"finest", notes.finest}, {"cut", notes.cut}};
 }
 
 Answer files_call(const Models& models, const std::string& first_view) {
@@ -131,6 +137,7 @@ Answer files_call(const Models& models, const std::string& first_view) {
       one["columns"] = input.grid->columns;
       one["rows"] = input.grid->rows;
       one["cell"] = std::min(input.grid->cell_width, input.grid->cell_height);
+      one["cell_size"] = {input.grid->cell_width, input.grid->cell_height};
       one["low"] = number_or_null(summary.minimum);
       one["high"] = number_or_null(summary.maximum);
       one["valid"] = summary.valid;
@@ -146,31 +153,32 @@ Answer files_call(const Models& models, const std::string& first_view) {
   return {{{"files", list}, {"given", models.given()}, {"first_view", first_view}}};
 }
 
-/// Fits, and gives the surface as triangles: as fine as the page's budget of triangles lets it be.
+/// Fits, and gives the surface as triangles, as they are seen from the eye.
 Answer fit_call(Models& models, const Json& input, const Context& context) {
   const ModelPointer model = models.fit(input, context);
-  const auto budget = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
-  const Terrain& terrain = *model->terrain;
-  const HeightRange range = heights_of(terrain);
-  double tolerance = 0;
-  const TriangleMesh mesh = drawn_mesh(terrain, range, budget, tolerance, context);
+  const HeightRange range = heights_of(*model->terrain);
   const Vec3 origin = origin_of(models, model->file);
-  std::vector<float> positions, normals;
-  positions.reserve(mesh.positions.size() * 3);
-  for (const Vec3 p : mesh.positions) push(positions, p, origin);
-  for (const Vec3 n : mesh.normals) push(normals, n, {});
-  std::vector<std::uint32_t> indices;
-  indices.reserve(mesh.triangles.size() * 3);
-  for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  DetailNotes notes;
+  const TriangleMesh mesh =
+      detail_mesh(*model->evaluator, model->bends, detail_of(input, origin, range), &notes, context);
   Json words = report_json(*model);
   words["model"] = model->id;
-  words["mesh_tolerance"] = tolerance;
-  words["mesh_triangles"] = mesh.triangles.size();
+  words["detail"] = detail_words(mesh, notes);
   words["origin"] = {origin.x, origin.y};
   words["range"] = {range.low, range.high};
-  return {words,
-          {make_array("position", positions), make_array("normal", normals), make_array("index", indices),
-           make_array("edges", edge_lines(*model, origin))}};
+  Answer answer{words, mesh_arrays(mesh, origin)};
+  answer.arrays.push_back(make_array("edges", edge_lines(*model, origin)));
+  return answer;
+}
+
+/// The triangles of a model anew, as they are seen from another eye.
+Answer detail_call(const Models& models, const Json& input, const Context& context) {
+  const ModelPointer model = models.get(input);
+  const Vec3 origin = origin_of(models, model->file);
+  DetailNotes notes;
+  const TriangleMesh mesh = detail_mesh(*model->evaluator, model->bends,
+                                        detail_of(input, origin, heights_of(*model->terrain)), &notes, context);
+  return {detail_words(mesh, notes), mesh_arrays(mesh, origin)};
 }
 
 /// Signed error (model less grid) of each block of cells: the one of the largest size in it.
@@ -384,6 +392,8 @@ void add_terrain_calls(CallTable& table, const InputFiles& inputs) {
                                  }};
   table["/api/terrain/fit"] = {
       Kind::slow, [models](const Json& in, const Context& context) { return fit_call(*models, in, context); }};
+  table["/api/terrain/detail"] = {
+      Kind::quick, [models](const Json& in, const Context& context) { return detail_call(*models, in, context); }};
   table["/api/terrain/errors"] = {
       Kind::slow, [models](const Json& in, const Context& context) { return errors_call(*models, in, context); }};
   table["/api/terrain/contours"] = {

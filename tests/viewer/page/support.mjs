@@ -45,6 +45,28 @@ export function writeHills(path, columns, rows) {
   writeFileSync(path, text);
 }
 
+/** A fractal terrain (octaves of noise between the points of ever finer lattices) as a PGM of 16 bits. */
+export function writeFractal(path, columns, rows) {
+  const heights = new Float64Array(columns * rows);
+  let seed = 12345;
+  const random = () => ((seed = (Math.imul(seed, 1103515245) + 12345) >>> 0) / 2 ** 32);
+  for (let period = 1024, size = 1; period >= 4; period /= 2, size *= 0.48) {
+    const across = Math.ceil(columns / period) + 2, lattice = Float64Array.from({length: across * (Math.ceil(rows / period) + 2)}, random);
+    const smooth = Float64Array.from({length: period}, (_, k) => { const t = k / period; return t * t * (3 - 2 * t); });
+    for (let r = 0; r < rows; ++r) {
+      const y = Math.floor(r / period) * across, v = smooth[r % period];
+      for (let c = 0; c < columns; ++c) {
+        const at = y + Math.floor(c / period), u = smooth[c % period];
+        const upper = lattice[at] + u * (lattice[at + 1] - lattice[at]), lower = lattice[at + across] + u * (lattice[at + across + 1] - lattice[at + across]);
+        heights[r * columns + c] += size * (upper + v * (lower - upper));
+      }
+    }
+  }
+  const bytes = Buffer.alloc(2 * heights.length);
+  heights.forEach((h, k) => bytes.writeUInt16BE(Math.round(600 * h), 2 * k));
+  writeFileSync(path, Buffer.concat([Buffer.from(`P5\n${columns} ${rows}\n65535\n`), bytes]));
+}
+
 /** Points with normals on an ellipsoid of half axes 1.4, 1 and 0.8, along a spiral. */
 export function writeEgg(path, count) {
   let text = 'x,y,z,nx,ny,nz\n';
@@ -57,7 +79,8 @@ export function writeEgg(path, count) {
 }
 
 export class View {
-  static async open(args) {
+  /** `shape`: another size of the window, or fingers (hasTouch). */
+  static async open(args, shape = {}) {
     const view = new View();
     view.folder = mkdtempSync(join(tmpdir(), 'retalho-page-'));
     mkdirSync(pictures, {recursive: true});
@@ -75,6 +98,7 @@ export class View {
       executablePath: findChromium(),
       headless: true,
       viewport: {width: 1280, height: 800},
+      ...shape,
       args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'],
     });
     view.page = view.context.pages()[0] ?? await view.context.newPage();
@@ -114,9 +138,9 @@ export class View {
 }
 
 /** Opens the page at one of its tabs, runs `run({view, page, folder, bar})`, and closes all; no error of the browser. */
-export async function withPage(files, tab, run) {
+export async function withPage(files, tab, run, shape = {}) {
   const folder = mkdtempSync(join(tmpdir(), 'retalho-page-test-'));
-  const view = await View.open(files);
+  const view = await View.open(files, shape);
   try {
     await view.go();
     await view.page.getByRole('tab', {name: tab}).click();

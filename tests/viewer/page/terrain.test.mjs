@@ -129,6 +129,39 @@ export const tests = [
     await view.picture('terrain-viewshed');
   })],
 
+  ['what is near is drawn finer, and no two levels leave a crack', () => withGrid(async ({view, page, folder}) => {
+    await page.locator('input[type=number][aria-label="Tolerance"]').fill('25');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    const detail = async () => JSON.parse(await page.locator('.stage .overlay').getAttribute('data-detail'));
+    const far = await detail();
+    await page.mouse.move(760, 470);
+    for (let k = 0; k < 14; ++k) await page.mouse.wheel(0, -240);
+    await view.quiet();
+    const near = await detail();
+    assert.ok(near.finest > far.finest, `${near.finest} pieces an edge near, ${far.finest} from afar`);
+    assert.ok(near.triangles <= 18_000, `${near.triangles} triangles`);
+    await view.picture('terrain-near');
+    // Straight down on the inside of the terrain every pixel is ground: a crack would let the sky through.
+    const saving = page.waitForEvent('download');
+    await page.getByRole('button', {name: 'Save picture'}).click();
+    const file = join(folder, 'near.png');
+    await (await saving).saveAs(file);
+    const {sky, pixels} = await page.evaluate(async (png) => {
+      const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(png), (c) => c.charCodeAt(0))]));
+      const {width, height} = picture, context = new OffscreenCanvas(width, height).getContext('2d');
+      context.drawImage(picture, 0, 0);
+      const colour = getComputedStyle(document.querySelector('.stage')).getPropertyValue('--sky').trim();
+      const rgb = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
+      const {data} = context.getImageData(width * 0.3, height * 0.6, width * 0.4, height * 0.3);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) if (rgb.every((v, k) => Math.abs(data[i + k] - v) <= 2)) ++count;
+      return {sky: count, pixels: data.length / 4};
+    }, readFileSync(file).toString('base64'));
+    assert.ok(pixels > 50_000);
+    assert.equal(sky, 0, `${sky} of ${pixels} pixels show the sky`);
+  })],
+
   ['three surfaces side by side; undo, redo, the link and a saved view bring them back', () => withGrid(async ({view, page, folder}) => {
     await page.getByLabel('Side by side').selectOption('3');
     await view.quiet();

@@ -7,9 +7,10 @@ import {History} from '../src/history';
 import {firstPatches, handleName, handles, movePoint, PATCH_PRESETS, pointsOf, readDocument, robustRange, snapped, type PatchDocument} from '../src/patches/state';
 import {rampBytes, rampColour} from '../src/ramps';
 import {decoded, encoded, merged} from '../src/state';
+import {planDrawing, planPath} from '../src/terrain/plan';
 import {ticks} from '../src/terrain/profile';
 import {coarseToFine, setTerm, termsOf, TETRA_PRESETS} from '../src/tetraquads/state';
-import {fitRequest, firstLook, roundStep, SIDE_BY_SIDE, type FileInfo} from '../src/terrain/state';
+import {cellCentre, fitRequest, firstLook, roundStep, SIDE_BY_SIDE, type FileInfo} from '../src/terrain/state';
 
 test('events are split, and what is incomplete waits', () => {
   const whole = 'event: progress\ndata: {"a":1}\n\nevent: done\ndata: {"b":2}\n\n';
@@ -113,6 +114,23 @@ test('a fit is asked for by its error or by its vertices, never both', () => {
   assert.deepEqual(fitRequest(state, SIDE_BY_SIDE[2], 100), {file: 0, surface: 'clough-tocher', fit: 'surface', max_error: 10, triangles: 100});
   state.budget = 'vertices';
   assert.deepEqual(fitRequest(state, SIDE_BY_SIDE[0], 100), {file: 0, surface: 'linear', fit: 'interpolate', vertices: 400, triangles: 100});
+});
+
+test('contours from above: pairs that follow each other are one line, north is up', () => {
+  const segments = new Float32Array([0, 0, 5, 1, 0, 5, 1, 0, 5, 1, 1, 5, -1, -1, 5, -1, 1, 5]);
+  assert.equal(planPath(segments, (x, y) => [x, -y]).replace(/-0\.00/g, '0.00'), 'M0.00 0.00L1.00 0.00L1.00 -1.00M-1.00 1.00L-1.00 -1.00');
+  const drawing = planDrawing(segments, new Float32Array(), 4, 2, 'metre', 'a < b');
+  assert.match(drawing, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg" width="1000" height="550"/);
+  assert.match(drawing, /class="minor"[^>]*d="M500.00 260.00L740.00 260.00L740.00 20.00M/);
+  assert.match(drawing, />1 metre; a &lt; b</);
+});
+
+test('a click goes to the nearest cell, and stays in the grid', () => {
+  const info = {cell_size: [10, 20], columns: 4, rows: 3} as unknown as FileInfo;
+  assert.deepEqual(cellCentre([6, 9], info), [5, 0]);
+  assert.deepEqual(cellCentre([-4, 11], info), [-5, 20]);
+  assert.deepEqual(cellCentre([999, -999], info), [15, -20]);
+  assert.deepEqual(cellCentre([1.5, 2.5], {} as FileInfo), [1.5, 2.5]);
 });
 
 test('lines are cut at the limit and nowhere else', () => {

@@ -16,13 +16,15 @@ export class CurveCanvas {
   readonly element = svg('svg', {class: 'curves', tabindex: 0, role: 'application', 'aria-label': 'The curves. Tab reaches the points, arrow keys move them.'});
   private box = [-1, -1, 1, 1];
   private state: CurvesState | null = null;
-  private dragging: {index: number; tangent: boolean} | {from: Point; box: number[]} | null = null;
+  private dragging: {index: number; tangent: boolean} | {from: Point; box: number[]} | {tap: Point} | {pinched: [Point, Point]} | null = null;
+  private readonly fingers = new Map<number, Point>();
 
   constructor(private events: CanvasEvents) {
+    this.element.addEventListener('pointerdown', (event) => this.touched(event), {capture: true});
     this.element.addEventListener('pointerdown', (event) => this.down(event));
     this.element.addEventListener('pointermove', (event) => this.moved(event));
-    this.element.addEventListener('pointerup', () => { this.dragging = null; });
-    this.element.addEventListener('pointercancel', () => { this.dragging = null; });
+    this.element.addEventListener('pointerup', (event) => this.lifted(event, true));
+    this.element.addEventListener('pointercancel', (event) => this.lifted(event, false));
     this.element.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     this.element.addEventListener('keydown', (event) => this.key(event));
   }
@@ -145,16 +147,50 @@ export class CurveCanvas {
     return circle;
   }
 
+  /** Two fingers hold two places of the drawing: it moves and zooms with them. */
+  private touched(event: PointerEvent): void {
+    if (event.pointerType !== 'touch') return;
+    this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
+    if (this.fingers.size !== 2) return;
+    const [a, b] = [...this.fingers.values()].map(([clientX, clientY]) => this.place({clientX, clientY}));
+    this.dragging = {pinched: [a, b]};
+    this.element.setPointerCapture(event.pointerId);
+    event.stopImmediatePropagation();
+  }
+
+  private lifted(event: PointerEvent, draws: boolean): void {
+    this.fingers.delete(event.pointerId);
+    const held = this.dragging;
+    this.dragging = null;
+    if (draws && held && 'tap' in held) this.events.draw(held.tap);
+  }
+
+  private pinch([a, b]: [Point, Point]): void {
+    const [p, q] = [...this.fingers.values()], rect = this.element.getBoundingClientRect();
+    const apart = Math.hypot(q[0] - p[0], q[1] - p[1]);
+    if (apart < 1) return;
+    const unit = Math.hypot(b[0] - a[0], b[1] - a[1]) / apart;
+    const x = (a[0] + b[0]) / 2 + unit * (rect.left + rect.width / 2 - (p[0] + q[0]) / 2), y = (a[1] + b[1]) / 2 - unit * (rect.top + rect.height / 2 - (p[1] + q[1]) / 2);
+    this.events.window([x - (unit * rect.width) / 2, y - (unit * rect.height) / 2, x + (unit * rect.width) / 2, y + (unit * rect.height) / 2]);
+  }
+
   private down(event: PointerEvent): void {
     if (event.button !== 0) return;
-    if (this.state?.tool === 'draw') return this.events.draw(this.place(event));
+    if (this.state?.tool === 'draw') {
+      // A finger draws when it is lifted: it may be the first of two.
+      if (event.pointerType !== 'touch') return this.events.draw(this.place(event));
+      this.dragging = {tap: this.place(event)};
+      return;
+    }
     this.dragging = {from: [event.clientX, event.clientY], box: [...this.box]};
     this.element.setPointerCapture(event.pointerId);
   }
 
   private moved(event: PointerEvent): void {
+    if (this.fingers.has(event.pointerId)) this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
     const held = this.dragging;
-    if (!held) return;
+    if (!held || 'tap' in held) return;
+    if ('pinched' in held) { if (this.fingers.size === 2) this.pinch(held.pinched); return; }
     if ('index' in held) return this.events.drag(held.index, this.place(event), held.tangent);
     const [x0, , x1] = this.shownBox(), unit = (x1 - x0) / (this.element.clientWidth || 1);
     const dx = (held.from[0] - event.clientX) * unit, dy = (event.clientY - held.from[1]) * unit;

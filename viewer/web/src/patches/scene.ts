@@ -87,7 +87,8 @@ export class PatchScene extends Stage {
   private size = 1;
   private step = 0;
   private readonly cursor = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffb000}));
-  private held: {handle: Handle; plane: Plane} | null = null;
+  private held: {handle: Handle; plane: Plane; first: PointerEvent} | null = null;
+  private passing = false;
 
   constructor(element: HTMLElement, private events: PatchSceneEvents) {
     super(element, 'The surface. Drag a point to move it; drag elsewhere to turn, right drag moves, the wheel zooms.', true, (camera) => events.cameraMoved(camera));
@@ -224,7 +225,16 @@ export class PatchScene extends Stage {
   }
 
   private down(event: PointerEvent): void {
-    if (event.button !== 0 || !this.dots.visible) return;
+    if (event.button !== 0 || !this.dots.visible || this.passing) return;
+    if (this.held) {
+      // A second finger: it was a pinch, and not the point, that the first one was for. The camera learns of both.
+      const {first} = this.held;
+      this.up();
+      this.passing = true;
+      this.canvas.dispatchEvent(new PointerEvent('pointerdown', first));
+      this.passing = false;
+      return;
+    }
     this.aim(event);
     // A finger or a mouse that is a little beside the point means it all the same: the nearest within some pixels.
     let best: Mesh | null = null, nearest = event.pointerType === 'touch' ? 24 : 14;
@@ -236,7 +246,7 @@ export class PatchScene extends Stage {
     event.stopImmediatePropagation();
     const {handle} = best.userData as {handle: Handle};
     this.canvas.setPointerCapture(event.pointerId);
-    this.held = {handle, plane: new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), best.position)};
+    this.held = {handle, first: event, plane: new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), best.position)};
     this.controls.enabled = false;
     this.events.drag(handle, best.position.toArray() as Vec3);
   }

@@ -29,12 +29,14 @@ export class TerrainControls {
   private readonly light;
   private readonly eye;
   private readonly radius;
+  private readonly snap;
+  private readonly planRow: HTMLElement;
   private readonly tools = new Map<Tool, HTMLButtonElement>();
   private readonly hint = make('p', {class: 'hint'});
   private readonly onlyGrids: HTMLElement;
   private shownPanels = '';
 
-  constructor(private files: FileInfo[], private edit: Edit, openFile: (file: number) => void, save: (format: SavedFormat) => void, ask: (x: number, y: number) => void) {
+  constructor(private files: FileInfo[], private edit: Edit, openFile: (file: number) => void, save: (format: SavedFormat) => void, saveContours: () => void, ask: (x: number, y: number) => void) {
     this.file = choice('Terrain', files.map((info, k): [string, string] => [String(k), info.name]), (v) => openFile(Number(v)));
     this.budget = choice('Fineness by', [['error', 'largest error'], ['vertices', 'number of vertices']], (v) => edit((s) => { s.budget = v as TerrainState['budget']; }));
     this.error = slider('Tolerance', '', (v) => edit((s) => { s.maxError = v; }, 'error'), true);
@@ -52,6 +54,8 @@ export class TerrainControls {
     this.exaggeration.limits(0.5, 5, 0.1);
     this.light = slider('Light from', 'degrees from north', (v) => edit((s) => { s.light = v; }, 'light'));
     this.light.limits(0, 360, 5);
+    this.snap = choice('Clicks go to', [['', 'where one clicks'], ['cells', 'the nearest cell’s centre']], (v) => edit((s) => { s.snap = v === 'cells'; }));
+    this.planRow = make('div', {class: 'row'}, make('button', {type: 'button', title: 'The contours of the first surface, seen from above', click: saveContours}, 'Save contours as SVG'));
     this.eye = slider('Eye over ground', '', (v) => edit((s) => { s.eye = v; }, 'eye'));
     this.eye.limits(0, 100, 0.5);
     this.radius = slider('Radius (0: no limit)', '', (v) => edit((s) => { s.radius = v; }, 'radius'));
@@ -77,8 +81,8 @@ export class TerrainControls {
     this.element = make('div', {class: 'controls'},
       this.file.element,
       section('Surface', this.onlyGrids, make('div', {class: 'row wrap'}, ...saveButtons(save))),
-      section('Picture', this.colour.element, this.triangles.element, this.contours.element, this.interval.element, this.exaggeration.element, this.light.element),
-      section('Questions', toolBar, this.hint, byNumbers, this.eye.element, this.radius.element, clear, this.readout));
+      section('Picture', this.colour.element, this.triangles.element, this.contours.element, this.interval.element, this.planRow, this.exaggeration.element, this.light.element),
+      section('Questions', toolBar, this.hint, this.snap.element, byNumbers, this.eye.element, this.radius.element, clear, this.readout));
   }
 
   show(state: TerrainState): void {
@@ -99,6 +103,9 @@ export class TerrainControls {
     this.colour.show(state.colour);
     this.triangles.show(state.triangles);
     this.contours.show(state.contours);
+    this.planRow.hidden = !state.contours;
+    this.snap.show(state.snap ? 'cells' : '');
+    this.snap.element.hidden = info.kind === 'model';
     this.interval.limits(roundStep(range / 500), range / 2);
     this.interval.show(state.interval);
     this.exaggeration.show(state.exaggeration);
@@ -109,6 +116,11 @@ export class TerrainControls {
     this.eye.element.hidden = this.radius.element.hidden = state.tool !== 'viewshed';
     for (const [tool, button] of this.tools) button.setAttribute('aria-pressed', String(tool === state.tool));
     this.hint.textContent = TOOLS.find(([tool]) => tool === state.tool)?.[2] ?? '';
+  }
+
+  /** Says that a click met no surface, until the next thing is shown. */
+  missed(yes: boolean): void {
+    if (yes) this.hint.textContent = 'There is no terrain there.';
   }
 
   private showPanels(state: TerrainState): void {

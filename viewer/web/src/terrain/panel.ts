@@ -1,10 +1,20 @@
 // One of the surfaces side by side: its geometry, its colours, what is drawn on it.
-import {BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Line, Mesh, MeshBasicMaterial, type Raycaster, SphereGeometry, type ShaderMaterial, Vector4} from 'three';
+import {BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Line, Mesh, MeshBasicMaterial, SphereGeometry, type ShaderMaterial, Vector4} from 'three';
 import type {Answer} from '../api';
 import {legend} from '../ramps';
 import {make, say, table} from '../dom';
 import {byteTexture, numberTexture, rampOf, setColours, setLight, surfaceMaterial} from './shaders';
-import {FITS, SURFACES, type FileInfo, type PanelState, type Place, type TerrainState} from './state';
+import {FITS, SURFACES, type FileInfo, type PanelState, type TerrainState} from './state';
+
+export type Vec3 = [x: number, y: number, z: number];
+
+/** What is drawn of a surface: how many triangles, and the error as a share of the distance from the eye. */
+export interface Detail {
+  triangles: number;
+  angle: number;
+  finest: number;
+  cut: number;
+}
 
 export interface Report {
   model: string;
@@ -18,8 +28,7 @@ export interface Report {
   violations?: number;
   valid_cells?: number;
   seconds: number;
-  mesh_tolerance: number;
-  mesh_triangles: number;
+  detail: Detail;
   range: [number, number];
 }
 
@@ -35,11 +44,14 @@ function liftedLines(): LineBasicMaterial {
 export class Panel {
   readonly group = new Group();
   readonly overlay = make('div', {class: 'overlay'});
+  private open = !matchMedia('(max-width: 800px)').matches;  // on a phone the words would hide the terrain
   readonly material: ShaderMaterial = surfaceMaterial();
   readonly surface = new Mesh(new BufferGeometry(), this.material);
   report: Report | null = null;
+  detail: Detail | null = null;
   errorRange = 0;
   contourWords = '';
+  contours: [minor: Float32Array, major: Float32Array] | null = null;
   private readonly edges = new LineSegments(new BufferGeometry(), liftedLines());
   private readonly minor = new LineSegments(new BufferGeometry(), liftedLines());
   private readonly major = new LineSegments(new BufferGeometry(), liftedLines());
@@ -59,15 +71,26 @@ export class Panel {
 
   takeSurface({words, arrays}: Answer): void {
     this.report = words as unknown as Report;
+    this.detail = this.report.detail;
+    this.takeTriangles(arrays);
+    this.replace(this.edges, lineGeometry(arrays.edges as Float32Array));
+    this.material.uniforms.flatFaces.value = this.report.surface === 'linear';
+    this.dropErrors();
+    this.dropContours();
+  }
+
+  /** The same surface as triangles for another eye. */
+  takeDetail({words, arrays}: Answer): void {
+    this.detail = words as unknown as Detail;
+    this.takeTriangles(arrays);
+  }
+
+  private takeTriangles(arrays: Answer['arrays']): void {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(arrays.position, 3));
     geometry.setAttribute('normal', new BufferAttribute(arrays.normal, 3));
     geometry.setIndex(new BufferAttribute(arrays.index, 1));
     this.replace(this.surface, geometry);
-    this.replace(this.edges, lineGeometry(arrays.edges as Float32Array));
-    this.material.uniforms.flatFaces.value = this.report.surface === 'linear';
-    this.dropErrors();
-    this.dropContours();
   }
 
   takeErrors({words, arrays}: Answer): void {
@@ -83,8 +106,9 @@ export class Panel {
     const segments = arrays.segments as Float32Array, major = arrays.major as Uint8Array;
     const parts: [number[], number[]] = [[], []];
     for (let i = 0; i < major.length; ++i) parts[major[i] > 0 ? 1 : 0].push(segments[3 * i], segments[3 * i + 1], segments[3 * i + 2]);
-    this.replace(this.minor, lineGeometry(new Float32Array(parts[0])));
-    this.replace(this.major, lineGeometry(new Float32Array(parts[1])));
+    this.contours = parts.map((part) => new Float32Array(part)) as [Float32Array, Float32Array];
+    this.replace(this.minor, lineGeometry(this.contours[0]));
+    this.replace(this.major, lineGeometry(this.contours[1]));
     this.contourWords = `${say(words.lines)} lines on ${say(words.levels)} levels`;
   }
 
@@ -104,6 +128,7 @@ export class Panel {
     this.replace(this.minor, new BufferGeometry());
     this.replace(this.major, new BufferGeometry());
     this.contourWords = '';
+    this.contours = null;
   }
 
   show(state: TerrainState, info: FileInfo, errorRange: number): void {
@@ -132,41 +157,26 @@ export class Panel {
       if (r.rmse !== undefined) rows.push(['RMSE', `${say(r.rmse, 4)} ${info.unit}`], ['largest error', `${say(r.max_error, 4)} ${info.unit}`], ['slope RMSE', say(r.slope_rmse, 3)]);
       if (state.contours && this.contourWords) rows.push(['contours', this.contourWords]);
     }
-    const children: Node[] = [make('h2', {}, surface), make('p', {}, fit), table(rows)];
+    const details: HTMLDetailsElement = make('details', {open: this.open, toggle: () => { this.open = details.open; }}, make('summary', {}, make('h2', {}, surface)), make('p', {}, fit), table(rows));
+    const children: Node[] = [details];
     const [low, high] = this.rangeOf(state, info, errorRange);
     if (state.colour === 'heights') children.push(legend(rampOf('heights'), 'height', info.unit, low, high));
     if (state.colour === 'error' && info.kind === 'grid' && errorRange > 0) children.push(legend(rampOf('error'), 'above (red), below (blue) the grid', info.unit, low, high));
     if (state.colour === 'slope') children.push(legend(rampOf('slope'), 'slope', 'degrees', low, high));
+    if (this.detail) this.overlay.dataset.detail = JSON.stringify(this.detail);
     this.overlay.replaceChildren(...children);
   }
 
-  /** Pins and the profile's line, on this panel's own surface. */
-  mark(places: {at: Place; colour: number}[], line: Place[], size: number, stretch: number, raycaster: Raycaster): void {
+  /** Pins and the profile's line, at the heights that the program gave for this panel's surface. */
+  mark(pins: {at: Vec3; colour: number}[], path: Float32Array, size: number, stretch: number): void {
     this.pins.clear();
-    for (const {at, colour} of places) {
-      const z = this.heightUnder(at, raycaster);
-      if (z === null) continue;
+    for (const {at, colour} of pins) {
       const pin = new Mesh(new SphereGeometry(size, 16, 12), new MeshBasicMaterial({color: colour}));
-      pin.position.set(at[0], at[1], z);
+      pin.position.set(...at);
       pin.scale.z = 1 / stretch;  // the group is stretched, the pin stays round
       this.pins.add(pin);
     }
-    const points: number[] = [];
-    for (let i = 0; i + 1 < line.length; ++i)
-      for (let k = i === 0 ? 0 : 1; k <= 48; ++k) {
-        const at: Place = [line[i][0] + ((line[i + 1][0] - line[i][0]) * k) / 48, line[i][1] + ((line[i + 1][1] - line[i][1]) * k) / 48];
-        const z = this.heightUnder(at, raycaster);
-        if (z !== null) points.push(at[0], at[1], z);
-      }
-    this.replace(this.path, lineGeometry(new Float32Array(points)));
-  }
-
-  private heightUnder(at: Place, raycaster: Raycaster): number | null {
-    raycaster.ray.origin.set(at[0], at[1], 1e7);
-    raycaster.ray.direction.set(0, 0, -1);
-    this.group.updateMatrixWorld();
-    const hit = raycaster.intersectObject(this.surface, false)[0];
-    return hit ? hit.point.z / this.group.scale.z : null;
+    this.replace(this.path, lineGeometry(path));
   }
 
   dispose(): void {

@@ -81,7 +81,7 @@ export class TerrainScene {
   }
 
   /** Where a click lies on the surface of the panel under it, in the page's coordinates; and which panel. */
-  pick(event: MouseEvent): {panel: number; at: Place} | null {
+  pick(event: MouseEvent): {panel: number; at: Place; height: number} | null {
     const box = this.canvas.getBoundingClientRect();
     const share = box.width / this.panels.length;
     const panel = Math.min(this.panels.length - 1, Math.max(0, Math.floor((event.clientX - box.left) / share)));
@@ -91,7 +91,7 @@ export class TerrainScene {
     this.raycaster.setFromCamera(new Vector2(x, y), this.camera);
     this.panels[panel].group.updateMatrixWorld();
     const hit = this.raycaster.intersectObject(this.panels[panel].surface, false)[0];
-    return hit ? {panel, at: [hit.point.x, hit.point.y]} : null;
+    return hit ? {panel, at: [hit.point.x, hit.point.y], height: hit.point.z / this.panels[panel].group.scale.z} : null;
   }
 
   /** Where a place of panel 0 is on the screen, in CSS pixels of the page: for tests and for the keyboard. */
@@ -103,8 +103,14 @@ export class TerrainScene {
     return [box.left + ((p.x + 1) / 2) * share, box.top + ((1 - p.y) / 2) * box.height];
   }
 
-  get ray(): Raycaster {
-    return this.raycaster;
+  /** Where the camera is, and half a pixel as an angle: what the program needs to know for the level of detail. */
+  get target(): [number, number, number] {
+    return this.controls.target.toArray();
+  }
+  get look(): {eye: [number, number, number]; angle: number} {
+    const height = this.element.clientHeight || 800;
+    this.setAspect((this.element.clientWidth || 1200) / Math.max(1, this.panels.length) / height);
+    return {eye: this.camera.position.toArray(), angle: Math.tan((this.camera.fov * Math.PI) / 360) / height};
   }
 
   draw(): void {

@@ -26,6 +26,7 @@ export interface TerrainState {
   asked: Place | null;
   line: Place[];
   observer: Place | null;
+  snap: boolean;  // clicks go to the centres of cells
   eye: number;
   radius: number;
   camera: number[] | null;
@@ -60,6 +61,7 @@ export interface FileInfo {
   low: number;
   high: number;
   cell: number;
+  cell_size?: [width: number, height: number];
   columns?: number;
   rows?: number;
   valid?: number;
@@ -92,10 +94,22 @@ export function firstLook(file: number, info: FileInfo): TerrainState {
     asked: null,
     line: [],
     observer: null,
+    snap: false,
     eye: 2,
     radius: 0,
     camera: null,
   };
+}
+
+/** The centre of the cell that a place (in the page's coordinates, which start in the middle) is nearest to. */
+export function cellCentre([x, y]: Place, info: FileInfo): Place {
+  const {cell_size: [width, height] = [0, 0], columns = 0, rows = 0} = info;
+  if (!(width > 0 && height > 0 && columns > 0 && rows > 0)) return [x, y];
+  const along = (v: number, step: number, count: number) => {
+    const middle = (count - 1) / 2;
+    return (Math.min(count - 1, Math.max(0, Math.round(v / step + middle))) - middle) * step;
+  };
+  return [along(x, width, columns), along(y, height, rows)];
 }
 
 /** What is asked of the program for one panel; equal requests give equal models. */
