@@ -26,6 +26,7 @@ const PICTURES = {
   start: [[], 'Start', async () => undefined],
   terrain: [[example('jacksboro.vrt')], 'Terrain', async ({page, view, bar}) => {
     await bar.getByLabel('Side by side').selectOption('3');
+    await view.quiet();
     await bar.getByLabel('Vertical exaggeration of the picture').last().fill('2');
     await page.keyboard.press('Enter');
     await bar.getByLabel('Fineness by').selectOption('vertices');
@@ -33,7 +34,8 @@ const PICTURES = {
     await page.keyboard.press('Enter');
     await view.quiet();
     await page.mouse.move(460, 400);
-    await wheel(page, -3);
+    await wheel(page, -1);
+    await bar.evaluate((element) => { element.parentElement.scrollTop = 0; });
   }],
   contours: [[example('jacksboro.vrt')], 'Terrain', async ({page, view, bar}) => {
     await bar.getByLabel('Fit').selectOption('surface');
@@ -71,10 +73,12 @@ const PICTURES = {
     await bar.getByLabel('Hodograph').check();
     await view.quiet();
   }],
-  patches: [[], 'Triangular surfaces', async ({view, bar}) => {
+  patches: [[], 'Triangular surfaces', async ({page, view, bar}) => {
     await bar.getByLabel('Surface shown').selectOption({label: 'Example: Hull'});
     await bar.getByLabel('Colour').selectOption('zebra');
     await view.quiet();
+    await page.mouse.move(800, 400);
+    await wheel(page, -2);
   }],
   tetraquads: [[], 'TetraQuads', async ({view, bar}) => {
     await bar.getByLabel('Surface', {exact: true}).selectOption({label: 'Example: Normals that jump'});

@@ -4,6 +4,7 @@ import {firstCurves, PRESETS} from './curves/state';
 import {CurvesView, type CurveFile} from './curves/view';
 import {download, make} from './dom';
 import {History} from './history';
+import {lazily} from './lazily';
 import {firstPatches, PATCH_PRESETS, readDocument, type PatchesState} from './patches/state';
 import {PatchesView, type PatchFile} from './patches/view';
 import {startPage, type Card} from './start';
@@ -69,18 +70,16 @@ async function start(): Promise<void> {
   if (history.state.patches.file >= patchFiles.length) history.change((s) => { s.patches = first.patches; }, {silent: true});
 
   const tasks = new Tasks(() => showStatus());
-  let terrain: TerrainView, patches: PatchesView, tetraquads: TetraQuadsView;
-  try {
-    terrain = new TerrainView(files, history.state.terrain,
-      (change, group) => history.change((s) => change(s.terrain), {group}), tasks,
-      (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
-      (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true}));
-    patches = new PatchesView(patchFiles, history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks);
-    tetraquads = new TetraQuadsView(tetraFiles, clouds, history.state.tetraquads, (change, options) => history.change((s) => change(s.tetraquads), options), tasks);
-  } catch {
-    return fail('This browser gives no WebGL 2 here, which the pictures need. Another browser, or its hardware acceleration, may help.');
-  }
-  const curves = new CurvesView(curveFiles, history.state.curves, (change, options) => history.change((s) => change(s.curves), options), tasks);
+  const aside = make('aside'), stages = make('main');
+  const place = ({element, stage}: {element: HTMLElement; stage: HTMLElement}) => { aside.append(element); stages.append(stage); };
+  const terrain = lazily(() => new TerrainView(files, history.state.terrain,
+    (change, group) => history.change((s) => change(s.terrain), {group}), tasks,
+    (file) => history.change((s) => { s.terrain = {...firstLook(file, files[file]), exaggeration: s.terrain.exaggeration}; }),
+    (camera) => history.change((s) => { s.terrain.camera = camera; }, {silent: true})), (view) => place({element: view.controls.element, stage: view.stage}));
+  const patches = lazily(() => new PatchesView(patchFiles, history.state.patches, (change, options) => history.change((s) => change(s.patches), options), tasks), place);
+  const tetraquads = lazily(() => new TetraQuadsView(tetraFiles, clouds, history.state.tetraquads, (change, options) => history.change((s) => change(s.tetraquads), options), tasks), place);
+  const curves = lazily(() => new CurvesView(curveFiles, history.state.curves, (change, options) => history.change((s) => change(s.curves), options), tasks), place);
+  const views = {terrain, curves, patches, tetraquads};
   const count = (n: number, one: string, many: string) => `${n} ${n === 1 ? one : many}`;
   const cards = (view: ViewName, list: {name: string; described: string}[], open: (k: number) => void) =>
     list.map(({name, described}, k): Card => ({name, described, open: () => { open(k); go(view); }}));
@@ -88,14 +87,14 @@ async function start(): Promise<void> {
     {title: 'Terrains', words: 'A grid becomes a surface of polynomial patches: fit it, see its errors, ask it, set surfaces side by side.',
       cards: cards('terrain', files, (file) => history.change((s) => { if (s.terrain.file !== file) s.terrain = firstLook(file, files[file]); }))},
     {title: 'Curves', words: 'Draw and drag control points, walk through de Casteljau’s triangle, read the continuity of each join.',
-      cards: [...cards('curves', curveFiles, (k) => curves.openFile(k)),
-        ...cards('curves', PRESETS.map(([name, document]) => ({name, described: [...new Set(document.curves.map((spec) => spec.kind))].join(', ')})), (k) => curves.open(PRESETS[k][1]))]},
+      cards: [...cards('curves', curveFiles, (k) => curves.get()?.openFile(k)),
+        ...cards('curves', PRESETS.map(([name, document]) => ({name, described: [...new Set(document.curves.map((spec) => spec.kind))].join(', ')})), (k) => curves.get()?.open(PRESETS[k][1]))]},
     {title: 'Triangular surfaces', words: 'Three space curves span a surface: drag their points, change its recovery, look at zebra stripes and curvature.',
-      cards: [...cards('patches', patchFiles, (k) => patches.openFile(k)),
-        ...cards('patches', PATCH_PRESETS.map(([name, document]) => ({name, described: `${count(document.patches.length, 'patch', 'patches')}, ${document.curves.length} curves`})), (k) => patches.open(PATCH_PRESETS[k][1]))]},
+      cards: [...cards('patches', patchFiles, (k) => patches.get()?.openFile(k)),
+        ...cards('patches', PATCH_PRESETS.map(([name, document]) => ({name, described: `${count(document.patches.length, 'patch', 'patches')}, ${document.curves.length} curves`})), (k) => patches.get()?.open(PATCH_PRESETS[k][1]))]},
     {title: 'TetraQuads', words: 'A quadric at each vertex of tetrahedra, one implicit cubic in each: ray cast from the quadrics themselves.',
-      cards: [...cards('tetraquads', tetraFiles, (k) => tetraquads.openFile('file', k)), ...cards('tetraquads', clouds, (k) => tetraquads.openFile('cloud', k)),
-        ...cards('tetraquads', TETRA_PRESETS.map(([name, document]) => ({name, described: count(document.tetrahedra.length, 'tetrahedron', 'tetrahedra')})), (k) => tetraquads.open(TETRA_PRESETS[k][1]))]},
+      cards: [...cards('tetraquads', tetraFiles, (k) => tetraquads.get()?.openFile('file', k)), ...cards('tetraquads', clouds, (k) => tetraquads.get()?.openFile('cloud', k)),
+        ...cards('tetraquads', TETRA_PRESETS.map(([name, document]) => ({name, described: count(document.tetrahedra.length, 'tetrahedron', 'tetrahedra')})), (k) => tetraquads.get()?.open(TETRA_PRESETS[k][1]))]},
   ]);
 
   function go(view: ViewName): void {
@@ -127,7 +126,7 @@ async function start(): Promise<void> {
   }}, 'Link');
   const picture = make('button', {type: 'button', click: async () => {
     const {view} = history.state;
-    const blob = await (view === 'patches' ? patches : view === 'tetraquads' ? tetraquads : terrain).scene.picture();
+    const blob = await (view === 'patches' ? patches : view === 'tetraquads' ? tetraquads : terrain).made?.scene.picture();
     if (blob) download(`${view}.png`, blob);
   }}, 'Save picture');
   const save = make('button', {type: 'button', title: 'What is shown, as a file that Open view reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
@@ -152,8 +151,8 @@ async function start(): Promise<void> {
   }});
   const openView = make('button', {type: 'button', click: () => input.click()}, 'Open view');
   const header = make('header', {}, make('h1', {}, 'Retalho'), tabBar, undo, redo, make('div', {class: 'space'}), picture, link, save, openView, input, tab, theme);
-  const aside = make('aside', {}, terrain.controls.element, curves.element, patches.element, tetraquads.element);
-  page.replaceChildren(header, aside, make('main', {}, starting, terrain.stage, curves.stage, patches.stage, tetraquads.stage), make('footer', {}, status, cancel));
+  stages.append(starting, ...Object.values(views).map((view) => view.failure));
+  page.replaceChildren(header, aside, stages, make('footer', {}, status, cancel));
 
   let noted = '';
   function note(words: string): void {
@@ -192,10 +191,15 @@ async function start(): Promise<void> {
     starting.hidden = state.view !== 'start';
     aside.hidden = state.view === 'start';
     picture.hidden = state.view === 'start' || state.view === 'curves';
-    terrain.show(state.terrain, state.view === 'terrain');
-    curves.show(state.curves, state.view === 'curves');
-    patches.show(state.patches, state.view === 'patches');
-    tetraquads.show(state.tetraquads, state.view === 'tetraquads');
+    for (const [name, view] of Object.entries(views)) {
+      const shown = name === state.view;
+      const made = shown ? view.get() : view.made;
+      view.failure.hidden = !shown || made !== null;
+    }
+    terrain.made?.show(state.terrain, state.view === 'terrain');
+    curves.made?.show(state.curves, state.view === 'curves');
+    patches.made?.show(state.patches, state.view === 'patches');
+    tetraquads.made?.show(state.tetraquads, state.view === 'tetraquads');
   }
   history.listen(show);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);

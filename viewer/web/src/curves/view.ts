@@ -54,7 +54,7 @@ export class CurvesView {
     this.stage.append(this.canvas.element);
     new ResizeObserver(() => this.draw()).observe(this.stage);
 
-    this.preset = choice('Example', [['', 'choose …'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...PRESETS.map(([name], k): [string, string] => [`preset ${k}`, name])], (v) => {
+    this.preset = choice('Example', [['', 'curves of one’s own'], ...files.map((file, k): [string, string] => [`file ${k}`, file.name]), ...PRESETS.map(([name], k): [string, string] => [`preset ${k}`, name])], (v) => {
       const [kind, k] = v.split(' ');
       if (kind === 'file') this.openFile(Number(k));
       if (kind === 'preset') this.open(PRESETS[Number(k)][1]);
@@ -162,7 +162,9 @@ export class CurvesView {
   }
 
   private showControls(state: CurvesState): void {
-    this.preset.show('');
+    const same = (document: CurveDocument) => JSON.stringify(document) === JSON.stringify(state.document);
+    const file = this.files.findIndex((one) => same(one.document)), preset = PRESETS.findIndex(([, document]) => same(document));
+    this.preset.show(file >= 0 ? `file ${file}` : preset >= 0 ? `preset ${preset}` : '');
     this.kind.show('');
     this.curve.replaceChildren(...state.document.curves.map((spec, k) => make('option', {value: k}, `${k + 1}: ${spec.name || spec.kind}`)));
     this.curve.value = String(state.selected);

@@ -48,7 +48,7 @@ void main() {
   if (dot(n, e) < 0.0) n = -n;
   vec3 base = vec3(0.79, 0.75, 0.66);
   if (style >= 4) base = texture(ramp, vec2(clamp((v - range.x) / (range.y - range.x), 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
-  float light = 0.35 + 0.65 * max(dot(n, normalize(vec3(0.35, 0.55, 0.8))), 0.0);
+  float light = 0.25 + 0.45 * max(dot(n, normalize(vec3(0.35, 0.55, 0.8))), 0.0) + 0.3 * max(dot(n, e), 0.0);
   if (style == 2) base = mix(vec3(0.1), vec3(0.97), stripe(5.0 * (reflect(-e, n).y + 1.0)));
   if (style == 3) base = mix(vec3(0.12, 0.3, 0.45), vec3(0.95), stripe(8.0 * dot(n, normalize(vec3(0.35, 0.55, 0.8)))));
   if (style == 2 || style == 3) light = 0.75 + 0.25 * light;

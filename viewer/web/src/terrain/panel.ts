@@ -32,11 +32,11 @@ export interface Report {
   range: [number, number];
 }
 
-/** Lines lie on the surface: they are drawn a little nearer than they are. */
-function liftedLines(): LineBasicMaterial {
+/** Lines lie on the surface, which is drawn as triangles about it: they are drawn a little nearer than they are. */
+function liftedLines(by = 0.0012): LineBasicMaterial {
   const material = new LineBasicMaterial({vertexColors: false, transparent: true});
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace('#include <project_vertex>', '#include <project_vertex>\ngl_Position.z -= 0.0012 * gl_Position.w;');
+    shader.vertexShader = shader.vertexShader.replace('#include <project_vertex>', '#include <project_vertex>\ngl_Position.z -= ' + by.toFixed(4) + ' * gl_Position.w;');
   };
   return material;
 }
@@ -55,7 +55,7 @@ export class Panel {
   private readonly edges = new LineSegments(new BufferGeometry(), liftedLines());
   private readonly minor = new LineSegments(new BufferGeometry(), liftedLines());
   private readonly major = new LineSegments(new BufferGeometry(), liftedLines());
-  private readonly path = new Line(new BufferGeometry(), liftedLines());
+  private readonly path = new Line(new BufferGeometry(), liftedLines(0.01));
   private readonly pins = new Group();
 
   constructor() {

@@ -97,7 +97,7 @@ export class TetraQuadScene extends Stage {
   frame(): void {
     const middle = this.low.clone().add(this.high).multiplyScalar(0.5), size = this.size;
     this.controls.target.copy(middle);
-    this.camera.position.copy(middle).add(new Vector3(0.8, -1.2, 0.7).multiplyScalar(size * 0.85));
+    this.camera.position.copy(middle).add(new Vector3(0.8, -1.2, 0.7).multiplyScalar(size * 0.9));
     this.camera.near = size / 200;
     this.camera.far = size * 20;
     this.controls.minDistance = size / 50;
