@@ -43,10 +43,11 @@ void add_grid_flags(CLI::App& command, GridFlags& flags) {
 }
 
 Raster load_grid(const Program& program, const std::string& path, const GridFlags& flags, RasterSummary& summary,
-                 const Context& context) {
+                 const Context& context, const Need& need) {
   note_input(path);
   ReadNotes notes;
   const Stopwatch watch;
+  check_grid_need(need, path, flags.band);
   Raster raster = read_raster(path, {flags.band, flags.nodata}, &notes, context);
   summary = summarize(raster);
   program.say(fmt::format("{}: {}", path, retalho::describe(raster, notes, summary)));
@@ -59,6 +60,7 @@ PointCloud load_points(const Program& program, const std::string& path, const Po
                        const Context& context) {
   note_input(path);
   PointNotes notes;
+  check_file_need("reading the points of", kPointFile, path);
   const Stopwatch watch;
   PointCloud cloud = read_points(path, options, &notes, context);
   program.say(fmt::format("{}: {}", path, retalho::describe(cloud, notes, summarize(cloud))));
@@ -79,6 +81,7 @@ Model load_any_model(const std::string& path, ModelFileNotes* notes) {
   note_input(path);
   if (std::filesystem::exists(path) && !is_model_file(path))
     throw CannotRead(fmt::format("'{}' is not a model file of retalho: make one with `retalho fit`", path), path);
+  check_file_need("reading the model", kModelFile, path);
   return load_model(path, notes);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "needs.h"
 #include "program.h"
 #include "retalho/cloud/cloud.h"
 #include "retalho/model/model.h"
@@ -26,15 +27,16 @@ struct GridFlags {
 };
 void add_grid_flags(CLI::App& command, GridFlags& flags);
 
-/// An elevation grid; its summary line and the reader's remarks go to standard error.
+/// An elevation grid; refused where it and `need` pass the memory limit; its summary line and the reader's remarks go
+/// to standard error.
 Raster load_grid(const Program& program, const std::string& path, const GridFlags& flags, RasterSummary& summary,
-                 const Context& context);
+                 const Context& context, const Need& need = {});
 /// The same for scattered points.
 PointCloud load_points(const Program& program, const std::string& path, const PointOptions& options,
                        const Context& context);
 /// Is this path read as points: by its ending, or since an attribute or a layer is named?
 bool takes_points(const std::string& path, const PointOptions& options);
-/// A terrain model. Throws BadInput when the model holds another kind of surface.
+/// A terrain model. Throws BadInput when the model holds another kind of surface, or passes the memory limit.
 Terrain load_terrain(const std::string& path, ModelFileNotes* notes = nullptr);
 /// Any model. Throws CannotRead, which says how models are made where the file is none.
 Model load_any_model(const std::string& path, ModelFileNotes* notes = nullptr);

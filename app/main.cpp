@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <new>
@@ -12,6 +13,7 @@
 #include "progress.h"
 #include "retalho/core/error.h"
 #include "signals.h"
+#include "work_limits.h"
 
 namespace retalho::app {
 namespace {
@@ -92,14 +94,26 @@ int fail(bool json, const Error& error) {
   return fail(json, error.exit_code(), kind_name(error.kind()), message, file, error.where());
 }
 
+int fail_stopped(bool json) {
+  if (const std::optional<Stop> stop = stopped_by_limit())
+    return fail(json, stop->code, stop->kind, stop->message, noted_input(), stop->where);
+  return fail(json, Interrupted());
+}
+
 int run(int argc, char** argv) {
   catch_signals();
+  // GDAL would keep blocks in a twentieth of the machine's memory: a few rows of blocks are all that we come back to.
+  setenv("GDAL_CACHEMAX", "64", 0);
+  const struct Limits {
+    ~Limits() { stop_limits(); }
+  } limits;
   const bool json = std::any_of(argv + 1, argv + argc, [](const char* a) { return std::strcmp(a, "--json") == 0; });
   const auto internal = [&](const std::string& words) {
     return fail(json, static_cast<int>(Error::Kind::internal), kind_name(Error::Kind::internal), words);
   };
   try {
     Program program;
+    program.say_stopped = [json] { return fail_stopped(json); };
     CLI::App root("Smooth surfaces made of polynomial patches.", "retalho");
     root.formatter(std::make_shared<RootHelp>());
     root.require_subcommand(1);
@@ -121,7 +135,7 @@ int run(int argc, char** argv) {
     end_progress();
     return 0;
   } catch (const Error& error) {
-    return fail(json, error);
+    return stopped_by_limit() ? fail_stopped(json) : fail(json, error);  // whatever the stopped step says of itself
   } catch (const std::bad_alloc&) {
     return internal("out of memory: the work does not fit; try a smaller input or a larger tolerance");
   } catch (const std::exception& error) {

@@ -13,6 +13,7 @@
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "signals.h"
+#include "work_limits.h"
 
 namespace retalho::app {
 namespace {
@@ -77,6 +78,11 @@ Context Program::context() const {
   return context;
 }
 
+void Program::start() const {
+  const double seconds = timeout.empty() ? 0 : parse_seconds(timeout);
+  start_limits(seconds, memory.empty() ? default_memory_limit() : parse_memory(memory), say_stopped);
+}
+
 void Program::say(const std::string& words) const {
   if (quiet) return;
   clear_progress();
@@ -107,6 +113,15 @@ CLI::App* add_command(CLI::App& root, Program& program, const std::string& name,
       ->check(CLI::Range(1, 1024))
       ->group("Every command");
   command->add_flag("--overwrite", program.overwrite, "Replace outputs that exist")->group("Every command");
+  command->add_option("--timeout", program.timeout, "Stop after this time, with exit code 124 and no output")
+      ->type_name("SECONDS")
+      ->group("Every command");
+  command
+      ->add_option("--memory-limit", program.memory,
+                   "Refuse work that needs more: bytes, or 512M, 2GB, 2GiB (default: three quarters of the machine's)")
+      ->type_name("SIZE")
+      ->group("Every command");
+  command->parse_complete_callback([&program] { program.start(); });
   return command;
 }
 

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -15,12 +16,17 @@ namespace retalho::app {
 
 /// The options that every command has, and the two ways to speak: data on standard output, words on standard error.
 struct Program {
+  /// Says why the work is ended by force, and returns the exit code (main.cpp).
+  std::function<int()> say_stopped;
   bool json = false, quiet = false, verbose = false, overwrite = false;
   int threads = 0;
+  std::string timeout, memory;  ///< --timeout, --memory-limit
 
   /// With threads, the signal handler's cancel flag and the progress bar. Call it once a command: the bar's stages are
   /// counted from here. The Context must not outlive the Program.
   Context context() const;
+  /// Starts the clock and the watch (work_limits.h). Throws UsageError. Called when the options are known.
+  void start() const;
   void say(const std::string& words) const;                ///< one line on standard error, unless --quiet
   void detail(const std::string& words) const;             ///< the same, only with --verbose
   void print(const nlohmann::ordered_json& result) const;  ///< the result as JSON on standard output; checks the write
@@ -36,7 +42,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Adds -q, -v, --json, --threads, --overwrite to a subcommand and, in front of its help, `examples` (one a line).
+/// Adds -q, -v, --json, --threads, --overwrite, --timeout, --memory-limit to a subcommand and, in front of its help,
+/// `examples` (one a line).
 CLI::App* add_command(CLI::App& root, Program& program, const std::string& name, const std::string& summary,
                       const std::string& examples);
 

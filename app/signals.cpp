@@ -4,14 +4,20 @@
 
 #include <csignal>
 
+#include "retalho/core/abandon.h"
+
 namespace retalho::app {
 namespace {
 
 std::atomic<bool> cancel{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
+std::atomic<std::uint64_t> committed{0};
+
 void handle(int) {
-  cancel.store(true, std::memory_order_relaxed);
+  if (cancel.load()) return;
+  committed.store(outputs_committed());
+  cancel.store(true);
 }
 
 /// Libraries abort where they cannot go on (GDAL without memory): exit 1 with words, as for all that fails inside.
@@ -36,6 +42,14 @@ void catch_signals() {
   if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGABRT, aborted);
+}
+
+void ask_to_stop() {
+  handle(0);
+}
+
+std::uint64_t outputs_at_stop() {
+  return committed.load();
 }
 
 const std::atomic<bool>& cancel_flag() {

@@ -75,6 +75,8 @@ std::vector<ModelReport> compare_models(const Options& options, const Raster& ra
   for (const std::string& path : options.models) {
     ModelFileNotes notes;
     const Terrain terrain = load_terrain(path, &notes);
+    const double heights = sizeof(float) * static_cast<double>(raster.cells());
+    check_terrain_need("comparing", terrain, kVertexLoaded, heights, path);
     check_same_crs(terrain.georef, path, raster.georef, options.dem);
     ModelReport report = facts_of(terrain);
     report.name = path;
@@ -193,7 +195,8 @@ void run(const Program& program, const Options& options) {
   if (can_stream(options)) {
     reports = compare_tiles(program, options, context);
   } else {
-    raster = load_grid(program, options.dem, options.grid, summary, context);
+    const Need need{"comparing", options.visibility.radius ? kCellCompared : 0, 0};
+    raster = load_grid(program, options.dem, options.grid, summary, context, need);
     if (options.visibility.radius) sight.emplace(program, options.visibility, *raster, context);
     VisibilityErrors* maps = sight ? &*sight : nullptr;
     reports = fitted ? compare_kinds(program, options, *raster, summary, maps, context)

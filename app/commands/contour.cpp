@@ -76,6 +76,7 @@ Surface load_surface(const Program& program, const Options& options, const Conte
     if (!options.surface.empty())
       throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
     surface.terrain = load_terrain(options.input);
+    check_terrain_need("contouring", *surface.terrain, kVertexLoaded, 0, options.input);
     measure(surface);
     return surface;
   }
@@ -92,7 +93,8 @@ Surface load_surface(const Program& program, const Options& options, const Conte
     return surface;
   }
   RasterSummary summary;
-  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const Need need{"contouring", chosen == 0 ? kCellContoured : 0, 0};
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context, need);
   if (chosen == 0) {
     if (options.budget.given())
       throw UsageError("--surface bicubic takes every cell: --max-error, --vertices and --ratio are for the others", {},

@@ -10,6 +10,7 @@
 #include "inputs.h"
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
+#include "retalho/core/memory.h"
 #include "retalho/model/model.h"
 #include "retalho/terrain/point_report.h"
 #include "retalho/terrain/surface_refine.h"
@@ -38,10 +39,19 @@ struct Fit {
   std::string compact;  ///< the file's bytes, with --format compact
 };
 
+/// What is known before: the vertices of a budget. Of a tolerance they are not.
+Need need_of(const Options& options, double a_vertex) {
+  Need need{"fitting", 0, 0};
+  if (options.budget.vertices) need.more = a_vertex * static_cast<double>(*options.budget.vertices);
+  if (!options.budget.ratio.empty()) need.a_cell = a_vertex * parse_ratio("--ratio", options.budget.ratio);
+  return need;
+}
+
 Fit fit_compactly(const Program& program, const Options& options, const Context& context) {
   const std::vector<CompactOptions> kinds = compact_options(options.surface, false);
   RasterSummary summary;
-  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const Raster raster =
+      load_grid(program, options.input, options.grid, summary, context, need_of(options, kVertexLeastSquares));
   const Budget budget =
       resolve(program, options.budget, summary.valid, summary.valid > 0 ? summary.maximum - summary.minimum : 0);
   if (budget.tolerance && budget.max_error == 0)
@@ -65,8 +75,11 @@ Fit fit_compactly(const Program& program, const Options& options, const Context&
 }
 
 Fit fit_grid(const Program& program, const Options& options, const SurfaceOptions& surface, const Context& context) {
+  const bool fitted = refines_surface(options.surface, options.budget, false) ||
+                      resolve_fit(options.surface, false) != FitKind::interpolate;
   RasterSummary summary;
-  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context,
+                                  need_of(options, fitted ? kVertexLeastSquares : kVertexFitted));
   const double range = summary.valid > 0 ? summary.maximum - summary.minimum : 0;
   const Budget budget = resolve(program, options.budget, summary.valid, range);
   Fit fit;
@@ -84,6 +97,10 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   } else {
     Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
     fit.seconds_triangulation = watch.seconds();
+    // A tolerance's vertices are known only now: the surface, its report and its file come on top.
+    check_memory(kProcessMemory + sizeof(float) * static_cast<double>(raster.cells()) +
+                     (fitted ? kVertexLeastSquares : kVertexFitted) * static_cast<double>(tin.vertex_count()),
+                 fmt::format("fitting {} vertices", tin.vertex_count()), options.input);
     fit.terrain = make_fitted(std::move(tin), raster, surface, resolve_fit(options.surface, false), context);
   }
   fit.terrain.tolerance = budget.max_error;
@@ -93,6 +110,8 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
 
 Fit fit_points(const Program& program, const Options& options, const SurfaceOptions& surface, const Context& context) {
   const PointCloud cloud = load_points(program, options.input, options.points, context);
+  check_memory(kProcessMemory + kPointFitted * static_cast<double>(cloud.positions.size()),
+               fmt::format("fitting {} points", cloud.positions.size()), options.input);
   Fit fit;
   const Stopwatch watch;
   ScatteredNotes notes;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "inputs.h"
+#include "needs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/model/tiled.h"
@@ -36,6 +37,7 @@ void add_place(Json& result, const Georef& georef) {
 
 Json raster_info(const Options& options, const Context& context) {
   ReadNotes notes;
+  check_grid_need({}, options.file, options.grid.band);
   const Raster raster = read_raster(options.file, {options.grid.band, options.grid.nodata}, &notes, context);
   const RasterSummary summary = summarize(raster);
   Json result = {{"file", options.file},
@@ -67,6 +69,7 @@ Json raster_info(const Options& options, const Context& context) {
 }
 
 Json point_info(const Options& options, const Context& context) {
+  check_file_need("reading the points of", kPointFile, options.file);
   PointNotes notes;
   const PointCloud cloud = read_points(options.file, options.points, &notes, context);
   const PointSummary summary = summarize(cloud);
@@ -182,8 +185,10 @@ Json model_info(const Options& options, const PatchSet& set) {
 }
 
 Json info(const Options& options, const Context& context) {
-  if (is_model_file(options.file))
+  if (is_model_file(options.file)) {
+    check_file_need("reading the model", kModelFile, options.file);
     return std::visit([&](const auto& shape) { return model_info(options, shape); }, load_model(options.file));
+  }
   if (std::filesystem::path(options.file).extension() == ".retalho") load_model(options.file);  // says what is wrong
   if (is_point_file(options.file) || !options.points.height_field.empty() || !options.points.layer.empty())
     return point_info(options, context);

@@ -44,6 +44,7 @@ void run(const Program& program, const Options& options) {
   const TriangleMesh mesh = std::visit(
       [&](const auto& shape) {
         if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Terrain>) {
+          check_terrain_need("meshing", shape, kVertexMeshed, 0, options.model);
           tolerance = mesh_tolerance(shape, {.tolerance = options.tolerance});
           if (options.tolerance <= 0)
             program.say(fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)",

@@ -54,6 +54,7 @@ std::unique_ptr<Shape> load_shape(const Program& program, const std::string& pat
   const std::string name = std::filesystem::path(path).filename().string();
   if (is_model_file(path) || std::filesystem::path(path).extension() == ".retalho") {
     shape->terrain = load_terrain(path);
+    check_terrain_need("drawing", *shape->terrain, kVertexLoaded, 0, path);
     shape->evaluator.emplace(*shape->terrain, context);
     shape->source = field_of(*shape->evaluator);
     const ModelReport facts = facts_of(*shape->terrain);

@@ -228,6 +228,8 @@ void sample_raster(const Program& program, const Options& options) {
   const Terrain terrain = load_terrain(options.model);
   Target target = options.like.empty() ? target_of_model(program, options, terrain)
                                        : target_like(program, options, terrain, context);
+  check_terrain_need("sampling", terrain, kVertexLoaded, kCellSampled * static_cast<double>(target.raster.cells()),
+                     options.model);
   const TerrainEvaluator evaluator(terrain, context);
   std::vector<double> values = quantity_on(target, evaluator, what, context);
   const auto valid =

@@ -6,6 +6,7 @@
 #include "retalho/core/error.h"
 #include "signals.h"
 #include "viewer/viewer.h"
+#include "work_limits.h"
 
 namespace retalho::app {
 namespace {
@@ -26,6 +27,7 @@ void run(const Program& program, const Options& options) {
   for (const viewer::CloudInput& one : inputs.clouds) program.say(fmt::format("{}: {}", one.name, one.described));
   program.detail(fmt::format("reading: {:.3f} s", watch.seconds()));
   BrowserDoor door;
+  end_softly();
   viewer::serve(inputs, program.threads, cancel_flag(), [&](const std::string& address) {
     if (program.json)
       program.print(nlohmann::ordered_json{{"address", address}});
@@ -35,6 +37,7 @@ void run(const Program& program, const Options& options) {
     if (!options.no_browser && !door.open(address))
       program.print(fmt::format("no browser could be started: open this address yourself\n{}\n", address));
   });
+  if (stopped_by_limit()) throw Interrupted();
   program.say("the page is closed");
 }
 

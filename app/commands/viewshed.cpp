@@ -36,9 +36,14 @@ struct Options {
 Raster load_heights(const Program& program, const Options& options, const Context& context) {
   if (!is_model_file(options.input)) {
     RasterSummary summary;
-    return load_grid(program, options.input, options.grid, summary, context);
+    return load_grid(program, options.input, options.grid, summary, context,
+                     {"the map of", options.intervisibility ? kCellIntervisible : kCellSeen, 0});
   }
   const Terrain terrain = load_terrain(options.input);
+  const double cells = static_cast<double>(terrain.grid.columns) * terrain.grid.rows;
+  check_terrain_need("the map of", terrain, kVertexLoaded,
+                     cells * (sizeof(double) + (options.intervisibility ? kCellIntervisible : kCellSeen)),
+                     options.input);
   Raster raster = raster_of_cells(TerrainEvaluator(terrain, context), context);
   program.say(
       fmt::format("{}: the model at the {} x {} cells of its grid", options.input, raster.columns, raster.rows));
@@ -210,6 +215,9 @@ void run_surface(const Program& program, const Options& options, const Stopwatch
         options.input, "--exact");
   const Context context = program.context();
   const Terrain terrain = load_terrain(options.input);
+  check_terrain_need("the map of", terrain, kVertexLoaded,
+                     static_cast<double>(terrain.grid.columns) * terrain.grid.rows * (sizeof(double) + kCellSeen),
+                     options.input);
   const TerrainEvaluator evaluator(terrain, context);
   if (options.curvature || options.frequency > 0) check_metres(program, terrain.georef);
   std::vector<SurfaceObserver> observers;

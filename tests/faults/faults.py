@@ -8,6 +8,7 @@
                       the old one or the whole new one, and the next run leaves no temporary of the killed one.
   faults.py signals   SIGINT in front of the n-th of these, SIGINT and SIGTERM in the middle of long work: 130, the old
                       output intact, nothing left; or, where it came too late, 0 and the whole output.
+  faults.py cancel    of these, the long work alone; the last line is the longest time to the end, as JSON, in seconds.
   faults.py streams   standard output full, closed, and a pipe that nobody reads: non-zero exit.
 
 Options: --program and --library (the preload library), --only WRITER, --every (every n even where there are hundreds;
@@ -16,6 +17,7 @@ else the first, the last, and one in eleven between), --random N (kills at rando
 import argparse
 import concurrent.futures
 import itertools
+import json
 import math
 import os
 import pathlib
@@ -43,14 +45,29 @@ def grid_text(columns, rows):
     return "\n".join(lines) + "\n"
 
 
+def ball_text(count):
+    """Points of a bumpy ball with their rough normals, on a spiral."""
+    lines = []
+    for i in range(count):
+        z = 1 - (2 * i + 1) / count
+        a, r = i * 2.399963229728653, math.sqrt(1 - z * z)
+        s = 1 + 0.1 * math.sin(9 * z + 5 * a)
+        n = (r * math.cos(a), r * math.sin(a), z)
+        lines.append(" ".join(f"{v:.5f}" for v in (*(s * x for x in n), *n)))
+    return "\n".join(lines) + "\n"
+
+
 def inputs(program, folder):
     """What the writers start from, made once."""
     (folder / "grid.asc").write_text(grid_text(12, 10))
     (folder / "large.asc").write_text(grid_text(700, 600))
     for name in ["patches/octant.json", "tetraquads/sphere.json", "curves/bspline.json"]:
         shutil.copy(ROOT / "examples" / name, folder)
+    (folder / "ball.xyz").write_text(ball_text(20000))
     for words in [["fit", "grid.asc", "-o", "terrain.retalho", "--max-error", "0"],
-                  ["fit", "large.asc", "-o", "large.retalho", "--max-error", "0.01", "--refine", "flat"]]:
+                  ["fit", "large.asc", "-o", "large.retalho", "--max-error", "0.01", "--refine", "flat"],
+                  ["patch", "octant.json", "-o", "octant.retalho", "--divisions", "200"],
+                  ["reconstruct", "ball.xyz", "-o", "ball.retalho", "--resolution", "24", "--fit", "local"]]:
         subprocess.run([program, *words, "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
 
 
@@ -270,43 +287,65 @@ def per_writer(options, stock):
         checks = list(pool.map(work, names))
     failures = [failure for check in checks for failure in check.failures]
     if options.kind == "signals" and not options.only:
-        failures += long_work(options, stock)
+        failures += long_work(options, stock)[0]
     runs, overcome = sum(check.runs for check in checks), sum(check.overcome for check in checks)
     return report(failures, f"{len(checks)} writers, {runs} runs, {overcome} went through in spite of it")
 
 
+# Work of seconds, in loops that are not each other's.
+LONG_WORK = {
+    "fit": ["fit", "large.asc", "-o", "o.retalho", "--max-error", "0.0001", "--refine", "flat"],
+    "fit --refine surface": ["fit", "large.asc", "-o", "o.retalho", "--refine", "surface", "--max-error", "0.001"],
+    "fit --fit least-squares": ["fit", "large.asc", "-o", "o.retalho", "--fit", "least-squares", "--max-error", "0.01", "--refine", "flat"],
+    "fit --format compact": ["fit", "large.asc", "-o", "o.retalho", "--format", "compact", "--max-error", "0.01"],
+    "compare": ["compare", "large.asc", "--max-error", "0.01"],
+    "contour": ["contour", "large.asc", "-o", "o.gpkg", "--interval", "0.02"],
+    "contour, model": ["contour", "large.retalho", "-o", "o.gpkg", "--interval", "0.02"],
+    "contour, sheet": ["contour", "large.asc", "-o", "o.pdf", "--interval", "0.1", "--bands", "--curves"],
+    "viewshed": ["viewshed", "large.asc", "-o", "o.tif", "--intervisibility"],
+    "viewshed --exact": ["viewshed", "large.retalho", "-o", "o.tif", "--exact", "--observer", "4000,5000,30"],
+    "sample": ["sample", "large.retalho", "-o", "o.tif", "--resolution", "0.5"],
+    "mesh": ["mesh", "large.retalho", "-o", "o.ply", "--tolerance", "0.000001"],
+    "mesh, patches": ["mesh", "octant.retalho", "-o", "o.ply", "--tolerance", "1e-9"],
+    "mesh, TetraQuad": ["mesh", "ball.retalho", "-o", "o.ply", "--tolerance", "1e-9"],
+    "render": ["render", "large.retalho", "-o", "o.png", "--size", "20000x16000"],
+    "render, patches": ["render", "octant.retalho", "-o", "o.png", "--size", "8000x8000"],
+    "patch": ["patch", "octant.json", "-o", "o.retalho", "--divisions", "900"],
+    "reconstruct": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "40"],
+    "reconstruct --fit cg": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "60", "--fit", "cg"],
+    "reconstruct --adaptive": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--adaptive", "200000"],
+}
+
+
 def long_work(options, stock):
     """SIGINT and SIGTERM in the middle of work that takes seconds."""
-    failures = []
-    for name, words in {
-        "fit": ["fit", "large.asc", "-o", "o.retalho", "--max-error", "0.0001", "--refine", "flat"],
-        "fit-smooth": ["fit", "large.asc", "-o", "o.retalho", "--refine", "surface", "--max-error", "0.001"],
-        "contour": ["contour", "large.asc", "-o", "o.gpkg", "--interval", "0.02"],
-        "viewshed": ["viewshed", "large.asc", "-o", "o.tif", "--intervisibility"],
-        "sample": ["sample", "large.retalho", "-o", "o.tif", "--resolution", "0.5"],
-        "mesh": ["mesh", "large.retalho", "-o", "o.ply", "--tolerance", "0.000001"],
-    }.items():
+    failures, longest = [], 0.0
+    for name, words in LONG_WORK.items():
         for number in (signal.SIGINT, signal.SIGTERM):
-            with tempfile.TemporaryDirectory(prefix="faults-long-", dir=SCRATCH) as folder:
-                words = [str(stock / w) if (stock / w).exists() else w for w in words]
-                started = time.monotonic()
-                with subprocess.Popen([options.program, *words, "-q"], cwd=folder, env=ENVIRONMENT,
-                                      stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as child:
-                    time.sleep(0.35)
-                    if child.poll() is not None:
-                        failures.append(f"{name}: done after 0.35 s (exit {child.returncode}); the test wants longer work")
-                        continue
-                    asked = time.monotonic()
-                    child.send_signal(number)
-                    words_said = child.stderr.read()
-                    code = child.wait(timeout=60)
-                late, left = time.monotonic() - asked, sorted(os.listdir(folder))
-                print(f"{name}, {number.name} after {asked - started:.2f} s: ended {1000 * late:.0f} ms later")
-                if code != 130 or left or "interrupted" not in words_said:
-                    failures.append(f"{name}, {number.name}: exit {code}, left {left}: {words_said[-200:]}")
-                if late > 2:  # 0.2 s on a machine with nothing else to do
-                    failures.append(f"{name}, {number.name}: stopped only after {late:.1f} s")
-    return failures
+            for wait in (0.35,) if number == signal.SIGTERM else (0.35, 0.9):
+                with tempfile.TemporaryDirectory(prefix="faults-long-", dir=SCRATCH) as folder:
+                    words = [str(stock / w) if (stock / w).exists() else w for w in words]
+                    started = time.monotonic()
+                    with subprocess.Popen([options.program, *words, "-q"], cwd=folder, env=ENVIRONMENT,
+                                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as child:
+                        time.sleep(wait)
+                        if child.poll() is not None:
+                            if wait < 0.5:
+                                failures.append(f"{name}: done after {wait} s (exit {child.returncode}); the test wants longer work")
+                            continue
+                        asked = time.monotonic()
+                        child.send_signal(number)
+                        words_said = child.stderr.read()
+                        code = child.wait(timeout=60)
+                    late, left = time.monotonic() - asked, sorted(os.listdir(folder))
+                    longest = max(longest, late)
+                    print(f"{name}, {number.name} after {asked - started:.2f} s: ended {1000 * late:.0f} ms later")
+                    if code != 130 or left or "interrupted" not in words_said:
+                        failures.append(f"{name}, {number.name}: exit {code}, left {left}: {words_said[-200:]}")
+                    if late > 2:  # 0.2 s on a machine with nothing else to do
+                        failures.append(f"{name}, {number.name}: stopped only after {late:.1f} s")
+    print(f"longest: {1000 * longest:.0f} ms")
+    return failures, longest
 
 
 def streams(options, stock):
@@ -319,8 +358,8 @@ def streams(options, stock):
                 ["curve", "bspline.json"], ["patch", "octant.json", "--divisions", "6"], ["reconstruct", "sphere.json", "-o", "{o}.retalho"]]
     failures, runs = [], 0
     with tempfile.TemporaryDirectory(prefix="faults-streams-", dir=SCRATCH) as folder:
-        for words, json in itertools.product(commands, [False, True]):
-            words = [w.replace("{o}", f"{folder}/o") for w in words] + (["--json"] if json and len(words) > 1 else [])
+        for words, as_json in itertools.product(commands, [False, True]):
+            words = [w.replace("{o}", f"{folder}/o") for w in words] + (["--json"] if as_json and len(words) > 1 else [])
             for how in ["full", "closed", "pipe"]:
                 for file in pathlib.Path(folder).iterdir():
                     file.unlink()
@@ -348,7 +387,7 @@ def streams(options, stock):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=["disk", "kills", "signals", "streams"])
+    parser.add_argument("kind", choices=["disk", "kills", "signals", "cancel", "streams"])
     parser.add_argument("--program", required=True)
     parser.add_argument("--library", required=True)
     parser.add_argument("--only", action="append")
@@ -360,6 +399,11 @@ def main():
     with tempfile.TemporaryDirectory(prefix="faults-stock-", dir=SCRATCH) as folder:
         stock = pathlib.Path(folder).resolve()
         inputs(options.program, stock)
+        if options.kind == "cancel":
+            failures, longest = long_work(options, stock)
+            code = report(failures, f"{len(LONG_WORK)} commands")
+            print(json.dumps({"value": round(longest, 3)}))
+            return code
         return streams(options, stock) if options.kind == "streams" else per_writer(options, stock)
 
 

@@ -7,21 +7,38 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "retalho/core/abandon.h"
 #include "retalho/core/error.h"
 
 namespace retalho {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::atomic<std::uint64_t> committed_count{0};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free, "a signal handler reads it");
+
+/// The temporaries of all outputs in the making. Never destroyed: threads may end after main.
+struct InTheMaking {
+  std::mutex list, naming;  ///< of the set; held while an output takes its name
+  std::multiset<std::string> temporaries;
+};
+InTheMaking& in_the_making() {
+  static auto* const all = new InTheMaking;
+  return *all;
+}
 
 std::string reason() {
   return std::strerror(errno);
@@ -150,7 +167,24 @@ void sweep(const fs::path& path) {
     if (is_main(name)) back(name);
 }
 
+void remove_with_parts(const std::string& temporary) {
+  for (const std::string& tail : parts_beside(temporary)) ::unlink(with_tail(temporary, tail).c_str());
+  ::unlink(temporary.c_str());
+}
+
 }  // namespace
+
+std::uint64_t outputs_committed() {
+  return committed_count.load();
+}
+
+bool abandon_outputs() {
+  InTheMaking& making = in_the_making();
+  if (!making.naming.try_lock()) return false;
+  const std::lock_guard lock(making.list);
+  for (const std::string& temporary : making.temporaries) remove_with_parts(temporary);
+  return true;
+}
 
 AtomicFile::AtomicFile(std::string path, bool overwrite) : path_(std::move(path)), overwrite_(overwrite) {
   const fs::path final_path(path_);
@@ -169,15 +203,19 @@ AtomicFile::AtomicFile(std::string path, bool overwrite) : path_(std::move(path)
   if (::access(folder.c_str(), W_OK) != 0)
     throw CannotWrite(fmt::format("cannot write into the folder '{}': {}", folder.string(), reason()), path_);
   temporary_ = (folder / (hidden_stem(final_path) + ".tmp" + final_path.extension().string())).string();
+  const std::lock_guard lock(in_the_making().list);
+  in_the_making().temporaries.insert(temporary_);
 }
 
 AtomicFile::~AtomicFile() {
   if (!committed_) remove_temporaries();
+  InTheMaking& making = in_the_making();
+  const std::lock_guard lock(making.list);
+  making.temporaries.erase(making.temporaries.find(temporary_));
 }
 
 void AtomicFile::remove_temporaries() const {
-  for (const std::string& tail : parts_beside(temporary_)) ::unlink(with_tail(temporary_, tail).c_str());
-  ::unlink(temporary_.c_str());
+  remove_with_parts(temporary_);
 }
 
 void AtomicFile::supersede(const std::string& old_part) {
@@ -195,11 +233,15 @@ void AtomicFile::commit() {
     if (!overwrite_ && fs::exists(part, ec))
       throw CannotWrite(fmt::format("'{}' exists: add --overwrite to replace it", part), part);
   }
-  if (tails.empty() && superseded_.empty())
-    take_name(temporary_, path_, overwrite_);
-  else
-    replace_set(tails);
-  committed_ = true;
+  {
+    const std::lock_guard naming(in_the_making().naming);
+    if (tails.empty() && superseded_.empty())
+      take_name(temporary_, path_, overwrite_);
+    else
+      replace_set(tails);
+    committed_ = true;
+    ++committed_count;
+  }
   // After this the names are on disk too. Not every file system can do it for a folder, and the output is there.
   sync_path(folder_of(path_), O_RDONLY | O_DIRECTORY);
 }

@@ -12,6 +12,7 @@ namespace retalho {
 void check_claim(int columns, int rows, std::size_t bytes, const std::string& name) {
   const double need = static_cast<double>(columns) * rows * static_cast<double>(bytes);
   const double have = static_cast<double>(available_memory());
+  check_memory(need, fmt::format("reading {} x {} cells", columns, rows), name);
   if (need <= 0.9 * have) return;
   throw BadInput(
       fmt::format("'{}' has {} x {} cells: their heights need {:.1f} GB of memory, and {:.1f} GB are available; "
