@@ -84,7 +84,9 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   const Budget budget = resolve(program, options.budget, summary.valid, range);
   Fit fit;
   const Stopwatch watch;
-  if (refines_surface(options.surface, options.budget, false)) {
+  // A grid without a range (flat, one cell, all void) leaves nothing to choose: 1 % of it is no tolerance.
+  const bool chosen = budget.max_error > 0 || budget.vertices > 0;
+  if (chosen && refines_surface(options.surface, options.budget, false)) {
     const RefineRounds rounds = rounds_of(resolve_effort(options.surface));
     fit.terrain = refine_surface(raster,
                                  {.surface = surface.surface,
