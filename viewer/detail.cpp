@@ -10,7 +10,8 @@
 namespace retalho::viewer {
 namespace {
 
-constexpr int kMostPieces = 64;  // along an edge
+constexpr int kMostPieces = 64;   // along an edge
+constexpr double kBehind = 1000;  // times the error is allowed where no one looks
 
 /// The distance of `p` from the segment a b.
 double distance_to(Vec3 p, Vec3 a, Vec3 b) {
@@ -40,18 +41,19 @@ class Cutter {
     const auto place = [&](std::uint32_t v) {
       return Vec3{tin_.points[v].x, tin_.points[v].y, options.stretch * tin_.heights[v]};
     };
+    const auto behind = [&](Vec3 p) { return dot(p - options.eye, options.forward) < 0; };
     // What is nearer than this is as near as this: an eye in the surface must not ask for everything.
     edge_allowed_.reserve(edges_.vertices.size());
     for (const auto& [a, b] : edges_.vertices) {
       const Vec3 from = place(a), to = place(b);
-      const double near = 1e-3 * norm(to - from);
-      edge_allowed_.push_back(std::max(near, distance_to(options.eye, from, to)) / options.stretch);
+      const double near = 1e-3 * norm(to - from), unseen = behind(from) && behind(to) ? kBehind : 1;
+      edge_allowed_.push_back(unseen * std::max(near, distance_to(options.eye, from, to)) / options.stretch);
     }
     centre_allowed_.reserve(tin_.triangle_count());
     for (const auto& v : tin_.triangles) {
       const Vec3 a = place(v[0]), b = place(v[1]), c = place(v[2]);
-      const double near = 1e-3 * norm(b - a);
-      centre_allowed_.push_back(std::max(near, norm(options.eye - (a + b + c) / 3)) / options.stretch);
+      const double near = 1e-3 * norm(b - a), unseen = behind(a) && behind(b) && behind(c) ? kBehind : 1;
+      centre_allowed_.push_back(unseen * std::max(near, norm(options.eye - (a + b + c) / 3)) / options.stretch);
     }
   }
 

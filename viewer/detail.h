@@ -15,8 +15,9 @@
 namespace retalho::viewer {
 
 /// How far the edges and triangles of a TIN may be from its surface, in height units: by the largest second derivative
-/// along an edge (L^2 / 8 of it) and along the three edges in a triangle (a sixth). Second derivatives are taken near the
-/// corners of the polynomial pieces, where those of cubics are largest. Made once for a model: about 1 us a triangle.
+/// along an edge (L^2 / 8 of it) and along the three edges in a triangle (a sixth). Second derivatives are taken near
+/// the corners of the polynomial pieces, where those of cubics are largest. Made once for a model: about 1 us a
+/// triangle.
 struct SurfaceBends {
   std::vector<float> edges, triangles;
 };
@@ -24,6 +25,7 @@ SurfaceBends measure_bends(const TerrainEvaluator& evaluator, const Context& con
 
 struct DetailOptions {
   Vec3 eye;             ///< local coordinates; z in the picture's heights, which are `stretch` times the terrain's
+  Vec3 forward = {};    ///< where it looks, as the eye is given: what lies behind it is coarse; zero: all around
   double stretch = 1;   ///< above 0
   double angle = 1e-3;  ///< the error that is wanted, as a share of the distance from the eye (about half a pixel)
   std::size_t budget = 10000;  ///< triangles: a larger angle is worked to where this one makes more

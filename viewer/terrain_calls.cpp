@@ -87,21 +87,31 @@ std::vector<float> edge_lines(const FittedModel& model, Vec3 origin) {
   return lines;
 }
 
-/// {"eye": [x, y, z], "stretch", "angle", "triangles"}: see detail.h. The eye is in the page's coordinates; without one
-/// the surface is seen from straight above and far away, to 1/2000 of its range of heights.
-DetailOptions detail_of(const Json& input, Vec3 origin, HeightRange range) {
+bool is_vector(const Json& v) {
+  return v.is_array() && v.size() == 3 && std::all_of(v.begin(), v.end(), [](const Json& one) {
+           return one.is_number() && std::abs(one.get<double>()) < kFar;
+         });
+}
+
+/// {"eye": [x, y, z], "forward", "stretch", "angle", "triangles"}: see detail.h. The eye is in the page's coordinates;
+/// without one the surface is seen from straight above and far away, to 1/2000 of its range of heights. Where the
+/// triangulation itself takes most of the triangles, half of them come on top.
+DetailOptions detail_of(const Json& input, const Terrain& terrain, Vec3 origin) {
   DetailOptions options;
-  options.budget = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
+  const auto wanted = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
+  options.budget = std::max(wanted, terrain.tin.triangle_count() + wanted / 2);
   const auto at = input.find("eye");
   if (at == input.end()) {
+    const HeightRange range = heights_of(terrain);
     options.eye = {origin.x, origin.y, kFar};
     options.angle = std::max(1e-9, (range.high - range.low) / 2000) / kFar;
     return options;
   }
-  if (!at->is_array() || at->size() != 3 || !std::all_of(at->begin(), at->end(), [](const Json& v) {
-        return v.is_number() && std::abs(v.get<double>()) < kFar;
-      }))
-    throw BadInput("'eye' must be three numbers", {}, "eye");
+  if (!is_vector(*at)) throw BadInput("'eye' must be three numbers", {}, "eye");
+  if (const auto way = input.find("forward"); way != input.end()) {
+    if (!is_vector(*way)) throw BadInput("'forward' must be three numbers", {}, "forward");
+    options.forward = {(*way)[0].get<double>(), (*way)[1].get<double>(), (*way)[2].get<double>()};
+  }
   options.eye = {(*at)[0].get<double>() + origin.x, (*at)[1].get<double>() + origin.y, (*at)[2].get<double>()};
   options.stretch = number(input, "stretch", 1e-3, 1e3);
   options.angle = number(input, "angle", 1e-7, 1);
@@ -160,7 +170,7 @@ Answer fit_call(Models& models, const Json& input, const Context& context) {
   const Vec3 origin = origin_of(models, model->file);
   DetailNotes notes;
   const TriangleMesh mesh =
-      detail_mesh(*model->evaluator, model->bends, detail_of(input, origin, range), &notes, context);
+      detail_mesh(*model->evaluator, model->bends, detail_of(input, *model->terrain, origin), &notes, context);
   Json words = report_json(*model);
   words["model"] = model->id;
   words["detail"] = detail_words(mesh, notes);
@@ -176,8 +186,8 @@ Answer detail_call(const Models& models, const Json& input, const Context& conte
   const ModelPointer model = models.get(input);
   const Vec3 origin = origin_of(models, model->file);
   DetailNotes notes;
-  const TriangleMesh mesh = detail_mesh(*model->evaluator, model->bends,
-                                        detail_of(input, origin, heights_of(*model->terrain)), &notes, context);
+  const TriangleMesh mesh =
+      detail_mesh(*model->evaluator, model->bends, detail_of(input, *model->terrain, origin), &notes, context);
   return {detail_words(mesh, notes), mesh_arrays(mesh, origin)};
 }
 

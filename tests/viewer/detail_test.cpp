@@ -114,6 +114,22 @@ TEST(Detail, TheBudgetGoesWhereTheEyeIs) {
   EXPECT_GT(west(-100), 4 * west(1300));
 }
 
+TEST(Detail, WhatLiesBehindIsCoarseAndStillMeetsTheRest) {
+  const Made made(SurfaceKind::clough_tocher);
+  const auto looking = [&](Vec3 forward) {
+    return detail_mesh(made.evaluator, made.bends,
+                       {.eye = {595, -445, 300}, .forward = forward, .angle = 4e-4, .budget = 4'000'000});
+  };
+  const auto east = [](const TriangleMesh& mesh) {
+    return std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                         [&](const std::array<std::uint32_t, 3>& t) { return mesh.positions[t[0]].x > 800; });
+  };
+  const TriangleMesh all = looking({}), west = looking({-1, 0, 0}), ahead = looking({1, 0, 0});
+  EXPECT_EQ(check_mesh(west).cracks, 0U);
+  EXPECT_EQ(east(ahead), east(all));
+  EXPECT_LT(4 * east(west), east(all));
+}
+
 TEST(Detail, KeepsToTheBudgetAndNeverGoesBelowTheTriangulation) {
   const Made made(SurfaceKind::clough_tocher);
   const std::size_t least = made.terrain.tin.triangle_count();

@@ -162,6 +162,49 @@ export const tests = [
     assert.equal(sky, 0, `${sky} of ${pixels} pixels show the sky`);
   })],
 
+  ['the keyboard alone: move, turn, zoom, a profile and a viewshed by numbers', () => withGrid(async ({view, page, dem, folder}) => {
+    await page.locator('input[type=number][aria-label="Tolerance"]').fill('5');
+    await page.keyboard.press('Enter');
+    await view.quiet();
+    const camera = async () => {
+      await page.getByRole('button', {name: 'Link'}).press('Enter');
+      return JSON.parse(Buffer.from((await page.evaluate(() => location.hash)).replace('#view=', ''), 'base64url').toString()).terrain.camera;
+    };
+    const press = async (...keys) => {
+      await page.locator('.terrain .stage > canvas').focus();
+      for (const key of keys) await page.keyboard.press(key);
+      await view.quiet();
+      return camera();
+    };
+    const distance = (c) => Math.hypot(c[0] - c[3], c[1] - c[4], c[2] - c[5]);
+    const first = await press('ArrowRight'), near = await press('+', '+', '+', '+', '+');
+    assert.ok(Math.abs(distance(near) / distance(first) - 1.15 ** -5) < 1e-3, 'plus zooms in');
+    const turned = await press('Shift+ArrowRight', 'Shift+ArrowRight');
+    assert.ok(Math.abs(distance(turned) - distance(near)) < 1e-3 * distance(near));
+    const angle = (c) => Math.atan2(c[1] - c[4], c[0] - c[3]) * 180 / Math.PI;
+    assert.ok(Math.abs(angle(turned) - angle(near) - 10) < 0.01, 'two turns of five degrees');
+    const moved = await press('ArrowLeft', 'ArrowLeft');
+    assert.ok(Math.hypot(moved[3] - turned[3], moved[4] - turned[4]) > 5, 'arrows move what is looked at');
+
+    const go = async (x, y) => {
+      await page.getByLabel('X in the CRS').fill(String(x));
+      await page.getByLabel('Y in the CRS').fill(String(y));
+      await page.keyboard.press('Enter');
+      await view.quiet();
+    };
+    await page.locator('.tools').getByRole('button', {name: 'Profile'}).press('Enter');
+    await go(1200, 2200);
+    await go(2300, 2900);
+    assert.equal(await page.locator('.chart .series').count(), 2);
+    assert.match(await page.locator('.chart').getAttribute('aria-label'), /^Profile of 1303\.8/);
+    await page.locator('.tools').getByRole('button', {name: 'Viewshed'}).press('Enter');
+    await go(1755, 2605);
+    const seen = Number(/(\d+) of (\d+) cells are seen/.exec(await page.$eval('.seen', (p) => p.textContent))[1]);
+    assert.equal(seen, retalho('viewshed', dem, '-o', join(folder, 'seen.tif'), '--observer', '1755,2605', '--observer-height', '2').visible_cells);
+    await go(99999, 2605);
+    assert.match(await page.locator('.controls:not([hidden])').textContent(), /There is no terrain there/);
+  })],
+
   ['three surfaces side by side; undo, redo, the link and a saved view bring them back', () => withGrid(async ({view, page, folder}) => {
     await page.getByLabel('Side by side').selectOption('3');
     await view.quiet();

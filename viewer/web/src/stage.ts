@@ -1,8 +1,10 @@
 // A picture in space that is turned by dragging, and drawn again only when something has changed: what the views of
 // triangular surfaces and of TetraQuads share.
-import {Color, PerspectiveCamera, Scene, Vector2, WebGLRenderer} from 'three';
+import {Color, PerspectiveCamera, Scene, Vector2, type WebGLRenderer} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {make} from './dom';
+import {cameraKeys, KEY_WORDS} from './keys';
+import {rendererOf} from './renderer';
 
 export abstract class Stage {
   readonly canvas: HTMLCanvasElement;
@@ -15,13 +17,15 @@ export abstract class Stage {
 
   /** `cameraMoved` is told the camera's position and target after a drag, to seven digits. */
   protected constructor(protected readonly element: HTMLElement, label: string, antialias: boolean, cameraMoved: (camera: number[]) => void) {
-    this.canvas = make('canvas', {tabindex: 0, 'aria-label': label});
-    this.renderer = new WebGLRenderer({canvas: this.canvas, antialias});
+    this.canvas = make('canvas', {tabindex: 0, 'aria-label': `${label} ${KEY_WORDS}`});
+    this.renderer = rendererOf(this.canvas, antialias);
     this.camera.up.set(0, 0, 1);
     element.append(this.canvas);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener('change', () => this.redraw());
-    this.controls.addEventListener('end', () => cameraMoved([...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => Number(v.toPrecision(7)))));
+    const moved = () => cameraMoved([...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => Number(v.toPrecision(7))));
+    this.controls.addEventListener('end', moved);
+    cameraKeys(this.canvas, this.camera, this.controls, moved);
     new ResizeObserver(() => this.redraw()).observe(element);
     const frame = () => {
       requestAnimationFrame(frame);
@@ -51,9 +55,16 @@ export abstract class Stage {
     return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
   }
 
+  /** A colour of the page's theme: "--ink". */
+  protected theme(name: string, otherwise: string): Color {
+    return new Color(getComputedStyle(this.element).getPropertyValue(name).trim() || otherwise);
+  }
   /** The camera for the element's shape. */
   protected prepare(): void {
-    this.camera.aspect = (this.element.clientWidth || 1) / (this.element.clientHeight || 1);
+    const aspect = (this.element.clientWidth || 1) / (this.element.clientHeight || 1);
+    this.camera.aspect = aspect;
+    // A narrow picture (a phone's) sees as much from side to side as a wide one.
+    this.camera.fov = (360 / Math.PI) * Math.atan(Math.tan((17.5 * Math.PI) / 180) * Math.max(1, 1.25 / aspect));
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }
@@ -66,7 +77,7 @@ export abstract class Stage {
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
     this.prepare();
-    this.renderer.setClearColor(new Color(getComputedStyle(this.element).getPropertyValue('--sky').trim() || '#e8edf2'), 1);
+    this.renderer.setClearColor(this.theme('--sky', '#e8edf2'), 1);
     this.renderer.render(this.scene, this.camera);
     return true;
   }

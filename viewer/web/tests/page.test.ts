@@ -1,9 +1,11 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
+import {Vector3} from 'three';
 import {splitEvents, splitToken, unpack} from '../src/api';
 import {addPoint, clipped, clippedPath, firstCurves, growable, PRESETS, removePoint} from '../src/curves/state';
 import {say} from '../src/dom';
 import {History} from '../src/history';
+import {turned} from '../src/keys';
 import {firstPatches, handleName, handles, movePoint, PATCH_PRESETS, pointsOf, readDocument, robustRange, snapped, type PatchDocument} from '../src/patches/state';
 import {rampBytes, rampColour} from '../src/ramps';
 import {decoded, encoded, merged} from '../src/state';
@@ -80,6 +82,16 @@ test('numbers are said as people read them', () => {
   assert.equal(say(1234567.891, 6), '1234568');
   assert.equal(say(0.1 + 0.2), '0.3');
   assert.equal(say(0.00001234), '1.234e−5');
+});
+
+test('a turn by keys keeps the distance, and neither stands on its head nor goes below the ground', () => {
+  const way = new Vector3(0, -3, 4);
+  const aside = turned(way, 1, 0, Math.PI);
+  assert.ok(Math.abs(aside.length() - 5) < 1e-12 && Math.abs(aside.z - 4) < 1e-12 && aside.x > 0.2);
+  let low = way, high = way;
+  for (let k = 0; k < 60; ++k) [low, high] = [turned(low, 0, 1, Math.PI / 2), turned(high, 0, -1, Math.PI / 2)];
+  assert.ok(Math.abs(low.z) < 1e-9 && Math.abs(low.length() - 5) < 1e-9);
+  assert.ok(high.z < 5 && high.z > 4.99 && high.y < 0);
 });
 
 test('ramps keep their ends, and the difference ramp is white in the middle', () => {

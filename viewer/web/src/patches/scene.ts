@@ -157,6 +157,7 @@ export class PatchScene extends Stage {
     (this.material.uniforms.range.value as Vector2).set(...range);
     const wires = state.mesh && !this.wires.visible;
     this.wires.visible = state.mesh;
+    this.wires.material.color = this.theme('--ink', '#1c2329');
     if (wires && this.surface.geometry.getAttribute('position')) this.wires.geometry = new WireframeGeometry(this.surface.geometry);
     this.size = size;
     this.step = state.snap;
@@ -181,7 +182,7 @@ export class PatchScene extends Stage {
     wanted.forEach(({handle, corner}, k) => {
       const dot = this.dots.children[k] as Mesh, [curve, index] = handle, at = pointsOf(state.document.curves[curve])[index];
       const chosen = state.point !== null && state.point[0] === curve && state.point[1] === index;
-      (dot.material as MeshBasicMaterial).color = new Color(chosen ? 0xffb000 : corner ? 0x1c2329 : 0x6b7780);
+      (dot.material as MeshBasicMaterial).color = chosen ? new Color(0xffb000) : corner ? this.theme('--ink', '#1c2329') : new Color(0x78848d);
       dot.position.set(...at);
       dot.scale.setScalar(size * (corner ? 0.014 : 0.011));
       dot.userData = {handle};

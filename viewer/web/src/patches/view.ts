@@ -27,6 +27,7 @@ export class PatchesView {
   private readonly snap;
   private readonly said = make('div', {class: 'unseen', 'aria-live': 'polite'});
   private readonly makes: HTMLElement;
+  private readonly saveCurves: HTMLElement;
   private readonly pointPlace: HTMLElement;
   private readonly divisions;
   private readonly recovery;
@@ -92,7 +93,7 @@ export class PatchesView {
         make('div', {class: 'row'}, make('button', {type: 'button', title: 'The parameter triangle as a drawing', click: () => download('parameters.svg', svgFile(this.triangle))}, 'Save triangle as SVG'))),
       this.pointPlace,
       make('div', {class: 'row wrap'}, ...saveButtons((format) => this.save(format)),
-        make('button', {type: 'button', title: 'The JSON that `retalho patch` reads', click: () => download('patch.json', new Blob([JSON.stringify(this.fileDocument(), null, 1)], {type: 'application/json'}))}, 'Save patch'),
+        this.saveCurves = make('button', {type: 'button', title: 'The JSON that `retalho patch` reads', click: () => download('patch.json', new Blob([JSON.stringify(this.fileDocument(), null, 1)], {type: 'application/json'}))}, 'Save patch'),
         make('button', {type: 'button', click: () => input.click()}, 'Open patch'), input), this.words);
   }
 
@@ -151,7 +152,7 @@ export class PatchesView {
     }
     const preset = PATCH_PRESETS.findIndex(([, document]) => JSON.stringify(document) === JSON.stringify(state.document));
     this.source.show(state.file >= 0 ? `file ${state.file}` : preset >= 0 ? `preset ${preset}` : '');
-    this.makes.hidden = this.polygons.element.hidden = this.pointPlace.hidden = state.file >= 0;
+    this.makes.hidden = this.polygons.element.hidden = this.pointPlace.hidden = this.saveCurves.hidden = state.file >= 0;
     this.showPatches(state.file >= 0 ? this.names : state.document.patches.map(({name}) => name));
     this.snap.show(String(state.snap));
     this.divisions.show(state.divisions);

@@ -32,6 +32,7 @@ export class TerrainControls {
   private readonly snap;
   private readonly planRow: HTMLElement;
   private readonly tools = new Map<Tool, HTMLButtonElement>();
+  private readonly go = make('button', {}, 'Ask');
   private readonly hint = make('p', {class: 'hint'});
   private readonly onlyGrids: HTMLElement;
   private shownPanels = '';
@@ -74,7 +75,7 @@ export class TerrainControls {
     const byNumbers = make('form', {class: 'row', submit: (event) => {
       event.preventDefault();
       if (x.value !== '' && y.value !== '') ask(Number(x.value), Number(y.value));
-    }}, x, y, make('button', {}, 'Ask'));
+    }}, x, y, this.go);
     const clear = make('button', {type: 'button', click: () => edit((s) => { s.asked = null; s.line = []; s.observer = null; })}, 'Clear marks');
 
     this.onlyGrids = make('div', {}, this.budget.element, this.error.element, this.vertices.element, this.layout.element, this.panels);
@@ -115,6 +116,7 @@ export class TerrainControls {
     this.radius.show(state.radius);
     this.eye.element.hidden = this.radius.element.hidden = state.tool !== 'viewshed';
     for (const [tool, button] of this.tools) button.setAttribute('aria-pressed', String(tool === state.tool));
+    this.go.textContent = state.tool === 'profile' ? 'Add' : state.tool === 'viewshed' ? 'Look' : 'Ask';
     this.hint.textContent = TOOLS.find(([tool]) => tool === state.tool)?.[2] ?? '';
   }
 

@@ -1,5 +1,8 @@
 // One of the surfaces side by side: its geometry, its colours, what is drawn on it.
-import {BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Line, Mesh, MeshBasicMaterial, SphereGeometry, type ShaderMaterial, Vector4} from 'three';
+import {BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, SphereGeometry, type ShaderMaterial, Vector4} from 'three';
+import {Line2} from 'three/examples/jsm/lines/Line2.js';
+import {LineGeometry} from 'three/examples/jsm/lines/LineGeometry.js';
+import {LineMaterial} from 'three/examples/jsm/lines/LineMaterial.js';
 import type {Answer} from '../api';
 import {legend} from '../ramps';
 import {make, say, table} from '../dom';
@@ -33,11 +36,18 @@ export interface Report {
 }
 
 /** Lines lie on the surface, which is drawn as triangles about it: they are drawn a little nearer than they are. */
-function liftedLines(by = 0.0012): LineBasicMaterial {
+function liftedLines(): LineBasicMaterial {
   const material = new LineBasicMaterial({vertexColors: false, transparent: true});
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace('#include <project_vertex>', '#include <project_vertex>\ngl_Position.z -= ' + by.toFixed(4) + ' * gl_Position.w;');
+    shader.vertexShader = shader.vertexShader.replace('#include <project_vertex>', '#include <project_vertex>\ngl_Position.z -= 0.0012 * gl_Position.w;');
   };
+  return material;
+}
+
+/** The profile's line, some pixels wide: it must be seen on every colour, and where the triangles lie over it a little. */
+function wideLine(): LineMaterial {
+  const material = new LineMaterial({color: 0xffffff, linewidth: 3});
+  material.vertexShader = material.vertexShader.replace('gl_Position = clip;', 'clip.z -= 0.004 * clip.w;\n gl_Position = clip;');
   return material;
 }
 
@@ -55,7 +65,7 @@ export class Panel {
   private readonly edges = new LineSegments(new BufferGeometry(), liftedLines());
   private readonly minor = new LineSegments(new BufferGeometry(), liftedLines());
   private readonly major = new LineSegments(new BufferGeometry(), liftedLines());
-  private readonly path = new Line(new BufferGeometry(), liftedLines(0.01));
+  private readonly path = new Line2(new LineGeometry(), wideLine());
   private readonly pins = new Group();
 
   constructor() {
@@ -64,7 +74,7 @@ export class Panel {
     (this.minor.material as LineBasicMaterial).color = new Color(0x3a2414);
     (this.minor.material as LineBasicMaterial).opacity = 0.75;
     (this.major.material as LineBasicMaterial).color = new Color(0x120a04);
-    (this.path.material as LineBasicMaterial).color = new Color(0xffffff);
+    this.path.visible = false;
     for (const object of [this.surface, this.edges, this.minor, this.major, this.path]) object.frustumCulled = false;
     this.group.add(this.surface, this.edges, this.minor, this.major, this.path, this.pins);
   }
@@ -176,7 +186,15 @@ export class Panel {
       pin.scale.z = 1 / stretch;  // the group is stretched, the pin stays round
       this.pins.add(pin);
     }
-    this.replace(this.path, lineGeometry(path));
+    this.path.visible = path.length >= 6;
+    this.path.geometry.dispose();
+    this.path.geometry = new LineGeometry();
+    if (this.path.visible) this.path.geometry.setPositions(path);
+  }
+
+  /** The picture's size in pixels of the page, for what is measured in them. */
+  size(width: number, height: number): void {
+    this.path.material.resolution.set(width, height);
   }
 
   dispose(): void {

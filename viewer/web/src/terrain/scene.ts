@@ -1,14 +1,15 @@
 // The terrain's picture: one canvas, panels side by side, one camera for all of them, drawn when something has changed.
-import {PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, type WebGLRenderer} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {make} from '../dom';
-import {isSoftware} from '../software';
+import {cameraKeys, KEY_WORDS} from '../keys';
+import {isSoftware, rendererOf} from '../renderer';
 import type {Panel} from './panel';
 import type {Place} from './state';
 
 export class TerrainScene {
   readonly element = make('div', {class: 'stage'});
-  readonly canvas = make('canvas', {tabindex: 0, 'aria-label': 'The terrain. Drag turns, right drag moves, the wheel zooms, arrow keys move.'});
+  readonly canvas = make('canvas', {tabindex: 0, 'aria-label': `The terrain. Drag turns, right drag moves, the wheel zooms. ${KEY_WORDS}`});
   readonly software: boolean;
   private readonly renderer: WebGLRenderer;
   private readonly camera = new PerspectiveCamera(40, 1, 1, 1e6);
@@ -20,16 +21,17 @@ export class TerrainScene {
   private shown = false;
 
   constructor(cameraMoved: (camera: number[]) => void) {
-    this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true});
+    this.renderer = rendererOf(this.canvas, true);
     this.software = isSoftware(this.renderer);
     this.camera.up.set(0, 0, 1);
     this.element.append(this.canvas);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.maxPolarAngle = Math.PI * 0.495;
     this.controls.screenSpacePanning = false;
-    this.controls.listenToKeyEvents(this.canvas);
     this.controls.addEventListener('change', () => this.redraw());
-    this.controls.addEventListener('end', () => cameraMoved(this.cameraState()));
+    const moved = () => cameraMoved(this.cameraState());
+    this.controls.addEventListener('end', moved);
+    cameraKeys(this.canvas, this.camera, this.controls, moved);
     new ResizeObserver(() => this.redraw()).observe(this.element);
     const frame = () => {
       requestAnimationFrame(frame);
@@ -107,10 +109,10 @@ export class TerrainScene {
   get target(): [number, number, number] {
     return this.controls.target.toArray();
   }
-  get look(): {eye: [number, number, number]; angle: number} {
+  get look(): {eye: [number, number, number]; forward: [number, number, number]; angle: number} {
     const height = this.element.clientHeight || 800;
     this.setAspect((this.element.clientWidth || 1200) / Math.max(1, this.panels.length) / height);
-    return {eye: this.camera.position.toArray(), angle: Math.tan((this.camera.fov * Math.PI) / 360) / height};
+    return {eye: this.camera.position.toArray(), forward: this.camera.getWorldDirection(new Vector3()).toArray(), angle: Math.tan((this.camera.fov * Math.PI) / 360) / height};
   }
 
   draw(): void {
@@ -128,6 +130,7 @@ export class TerrainScene {
       const left = Math.round((width * k) / n), right = Math.round((width * (k + 1)) / n);
       for (const other of this.panels) other.group.visible = other === panel;
       this.setAspect((right - left) / height);
+      panel.size(right - left, height);
       this.renderer.setViewport(left, 0, right - left, height);
       this.renderer.setScissor(left, 0, right - left - (k + 1 < n ? 2 : 0), height);
       this.renderer.render(this.scene, this.camera);

@@ -110,9 +110,9 @@ export class TerrainView {
   private fitted = new Map<Panel, string>();
 
   /** The eye, in steps of a twentieth of its distance: small moves ask for nothing. */
-  private look(): {eye: number[]; stretch: number; angle: number} {
-    const {eye, angle} = this.scene.look, step = 2 ** Math.round(Math.log2(Math.hypot(...eye.map((v, k) => v - this.scene.target[k])) / 20));
-    return {eye: eye.map((v) => Math.round(v / step) * step), stretch: this.state.exaggeration, angle: Number(angle.toPrecision(2))};
+  private look(): {eye: number[]; forward: number[]; stretch: number; angle: number} {
+    const {eye, forward, angle} = this.scene.look, step = 2 ** Math.round(Math.log2(Math.hypot(...eye.map((v, k) => v - this.scene.target[k])) / 20));
+    return {eye: eye.map((v) => Math.round(v / step) * step), forward: forward.map((v) => Math.round(10 * v) / 10), stretch: this.state.exaggeration, angle: Number(angle.toPrecision(2))};
   }
 
   private frameBySurface(panel: Panel): void {
@@ -220,13 +220,14 @@ export class TerrainView {
     download('contours.svg', new Blob([planDrawing(...contours, width, height, info.unit, `${info.name}, contours every ${say(this.state.interval)} ${info.unit}`)], {type: 'image/svg+xml'}));
   }
 
-  /** A place by its coordinates in the CRS. */
+  /** A place by its coordinates in the CRS, for the tool in hand. */
   private async askAt(x: number, y: number): Promise<void> {
     const model = this.models()[0];
     if (!model) return;
     const {words} = await ask('/api/terrain/at', {model, crs_x: x, crs_y: y});
     const place: Place = [words.local_x as number, words.local_y as number];
-    this.edit((s) => { s.asked = place; });
+    this.controls.missed(!words.valid);
+    if (words.valid) this.use(place, words.z as number);
   }
 
   private clicked(event: MouseEvent): void {
@@ -234,13 +235,16 @@ export class TerrainView {
     if (tool === 'look') return;
     const hit = this.scene.pick(event);
     this.controls.missed(!hit);
-    if (!hit) return;
-    if (tool === 'profile') this.heights.corner = [...hit.at, hit.height];
-    const at = this.state.snap ? cellCentre(hit.at, this.files[this.state.file]) : hit.at;
+    if (hit) this.use(this.state.snap ? cellCentre(hit.at, this.files[this.state.file]) : hit.at, hit.height);
+  }
+
+  private use(at: Place, height: number): void {
+    const {tool} = this.state;
+    if (tool === 'profile') this.heights.corner = [...at, height];
     this.edit((s) => {
-      if (tool === 'ask') s.asked = at;
       if (tool === 'viewshed') s.observer = at;
-      if (tool === 'profile') s.line.push(at);
+      else if (tool === 'profile') s.line.push(at);
+      else s.asked = at;
     });
   }
 

@@ -1,7 +1,7 @@
 // The picture of a TetraQuad surface: tetrahedra whose fragments are rays (shader.ts), their edges, the chosen vertex.
 import {BackSide, BufferAttribute, BufferGeometry, DataTexture, FloatType, GLSL3, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, NearestFilter, RGBAFormat, RGBAIntegerFormat, ShaderMaterial, SphereGeometry, UnsignedIntType, Vector3, WebGLRenderTarget} from 'three';
 import type {Answer} from '../api';
-import {isSoftware} from '../software';
+import {isSoftware} from '../renderer';
 import {Stage} from '../stage';
 import {FRAGMENT, VERTEX} from './shader';
 import type {TetraQuadsState} from './state';
@@ -123,6 +123,7 @@ export class TetraQuadScene extends Stage {
     if (vertexAt) this.pin.position.fromArray(vertexAt);
     this.mark.visible = point !== null;
     if (point) this.mark.position.fromArray(point);
+    this.mark.material.color = this.theme('--ink', '#1c2329');
     this.pin.scale.setScalar(this.size * 0.016);
     this.mark.scale.setScalar(this.size * 0.008);
     this.canvas.dataset.tool = state.ask ? 'ask' : 'look';

@@ -36,6 +36,7 @@ export class TetraQuadsView {
   private readonly vertex = make('select', {'aria-label': 'Vertex', change: () => this.edit((s) => { s.vertex = this.vertex.value === '' ? null : this.vertex.value.split(',').map(Number); }, {silent: true})});
   private readonly sliders = new Map<Term, ReturnType<typeof slider>>();
   private readonly editor: HTMLElement;
+  private readonly saveQuadrics = make('button', {type: 'button', title: 'The JSON that `retalho reconstruct` makes a model of (docs/tetraquad.md)', click: () => download('quadrics.json', new Blob([JSON.stringify(this.state.document, null, 1)], {type: 'application/json'}))}, 'Save quadrics');
   private readonly facts = make('div', {class: 'readout facts'});
   private readonly readout = make('div', {class: 'readout answer', 'aria-live': 'polite'});
   private readonly words = make('p', {class: 'hint error-words', role: 'alert'});
@@ -77,7 +78,7 @@ export class TetraQuadsView {
       section('Question', this.askToggle.element, this.readout),
       section('Quadric of a vertex', this.editor),
       make('div', {class: 'row wrap'}, ...saveButtons((format) => this.save(format)),
-        make('button', {type: 'button', title: 'The JSON that `retalho reconstruct` makes a model of (docs/tetraquad.md)', click: () => download('quadrics.json', new Blob([JSON.stringify(this.state.document, null, 1)], {type: 'application/json'}))}, 'Save quadrics'),
+        this.saveQuadrics,
         make('button', {type: 'button', click: () => input.click()}, 'Open quadrics'), input), this.words);
   }
 
@@ -207,7 +208,7 @@ export class TetraQuadsView {
     if (!this.loaded) return;
     const {words} = this.loaded, {state} = this;
     this.facts.replaceChildren(table([['vertices', say(words.vertices)], ['tetrahedra', say(words.tetrahedra)], ['that the surface may cross', say(words.crossed)], ['step', say(words.step)], ...this.madeRows()]));
-    this.editor.hidden = state.file >= 0 || state.cloud >= 0;
+    this.editor.hidden = this.saveQuadrics.hidden = state.file >= 0 || state.cloud >= 0;
     const names = JSON.stringify(words.lattice);
     if (names !== this.shownVertices) {
       this.shownVertices = names;
