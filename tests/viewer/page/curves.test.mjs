@@ -110,6 +110,24 @@ export const tests = [
     await view.quiet();
     assert.ok(await page.locator('.hodograph').count() > 0);
     await view.picture('curves-comb');
+    // The picture as a PNG: the same drawing, so that nearly every pixel of the curve's colour on the screen has it there.
+    const saving = page.waitForEvent('download');
+    await page.getByRole('button', {name: 'Save picture'}).click();
+    const png = join(folder, 'curves.png');
+    await (await saving).saveAs(png);
+    const box = await page.locator('svg.curves').boundingBox();
+    const screen = await page.screenshot({clip: box});
+    const [drawn, seen] = await Promise.all([readFileSync(png), screen].map((bytes) => page.evaluate(async (base64) => {
+      const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
+      const {width, height} = picture, context = new OffscreenCanvas(width, height).getContext('2d');
+      context.drawImage(picture, 0, 0);
+      const {data} = context.getImageData(0, 0, width, height);
+      let blue = 0;
+      for (let i = 0; i < data.length; i += 4) if (Math.abs(data[i] - 0x2a) < 24 && Math.abs(data[i + 1] - 0x8a) < 24 && Math.abs(data[i + 2] - 0xc4) < 24) ++blue;
+      return {width, height, blue};
+    }, bytes.toString('base64'))));
+    assert.equal(drawn.width, 2 * seen.width);
+    assert.ok(seen.blue > 500 && Math.abs(drawn.blue / (4 * seen.blue) - 1) < 0.35, `${drawn.blue} pixels of the curve's colour, ${seen.blue} on the screen`);
     const file = await saved(page, folder);
     assert.equal(JSON.parse(readFileSync(file, 'utf8')).curves[0].kind, 'bspline');
   })],

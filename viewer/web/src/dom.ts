@@ -126,6 +126,53 @@ export function svgFile(element: SVGElement): Blob {
   return new Blob([copy.outerHTML], {type: 'image/svg+xml'});
 }
 
+function shapeOf(element: Element): Path2D | null {
+  if (element instanceof SVGPathElement) return new Path2D(element.getAttribute('d') ?? '');
+  const path = new Path2D();
+  if (element instanceof SVGLineElement) {
+    path.moveTo(element.x1.baseVal.value, element.y1.baseVal.value);
+    path.lineTo(element.x2.baseVal.value, element.y2.baseVal.value);
+  } else if (element instanceof SVGCircleElement) {
+    path.arc(element.cx.baseVal.value, element.cy.baseVal.value, element.r.baseVal.value, 0, 2 * Math.PI);
+  } else if (element instanceof SVGRectElement) {
+    path.rect(element.x.baseVal.value, element.y.baseVal.value, element.width.baseVal.value, element.height.baseVal.value);
+  } else return null;
+  return path;
+}
+
+/** A drawing in pixels (of lines, paths, circles, rectangles and texts) as a PNG, twice as fine as the screen: drawn anew,
+ * since the page's security policy lets no picture in that the program did not send. */
+export function svgPicture(element: SVGSVGElement, background: string): Promise<Blob | null> {
+  const box = element.getBoundingClientRect(), ratio = 2;
+  const canvas = make('canvas', {width: Math.max(1, Math.round(box.width * ratio)), height: Math.max(1, Math.round(box.height * ratio))});
+  const context = canvas.getContext('2d');
+  if (!context) return Promise.resolve(null);
+  context.scale(ratio, ratio);
+  context.fillStyle = background;
+  context.fillRect(0, 0, box.width, box.height);
+  for (const one of element.querySelectorAll('*')) {
+    const style = getComputedStyle(one), shape = shapeOf(one);
+    if (one.classList.contains('hit')) continue;
+    context.globalAlpha = Number(style.opacity);
+    if (one instanceof SVGTextElement) {
+      context.font = `${style.fontSize} ${style.fontFamily}`;
+      context.fillStyle = style.fill;
+      context.fillText(one.textContent ?? '', Number(one.getAttribute('x')), Number(one.getAttribute('y')));
+    }
+    if (!shape) continue;
+    if (style.fill !== 'none') {
+      context.fillStyle = style.fill;
+      context.fill(shape);
+    }
+    if (style.stroke === 'none') continue;
+    context.strokeStyle = style.stroke;
+    context.lineWidth = parseFloat(style.strokeWidth);
+    context.setLineDash(style.strokeDasharray === 'none' ? [] : style.strokeDasharray.split(/[\s,]+/).map(parseFloat));
+    context.stroke(shape);
+  }
+  return new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
+}
+
 /** Gives the browser a file to save. */
 export function download(name: string, content: Blob): void {
   const address = URL.createObjectURL(content);

@@ -126,7 +126,7 @@ async function start(): Promise<void> {
   }}, 'Link');
   const picture = make('button', {type: 'button', click: async () => {
     const {view} = history.state;
-    const blob = await (view === 'patches' ? patches : view === 'tetraquads' ? tetraquads : terrain).made?.scene.picture();
+    const blob = await (view === 'curves' ? curves.made?.picture() : (view === 'patches' ? patches : view === 'tetraquads' ? tetraquads : terrain).made?.scene.picture());
     if (blob) download(`${view}.png`, blob);
   }}, 'Save picture');
   const save = make('button', {type: 'button', title: 'What is shown, as a file that Open view reads', click: () => download('view.json', new Blob([JSON.stringify(history.state, null, 1)], {type: 'application/json'}))}, 'Save view');
@@ -190,7 +190,7 @@ async function start(): Promise<void> {
     page.dataset.view = state.view;
     starting.hidden = state.view !== 'start';
     aside.hidden = state.view === 'start';
-    picture.hidden = state.view === 'start' || state.view === 'curves';
+    picture.hidden = state.view === 'start';
     for (const [name, view] of Object.entries(views)) {
       const shown = name === state.view;
       const made = shown ? view.get() : view.made;

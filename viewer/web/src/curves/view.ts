@@ -1,6 +1,6 @@
 // The curve view: a document of curves, drawn and changed by hand; every number and every line is the program's.
 import {ask} from '../api';
-import {choice, download, make, say, slider, svgFile, table, toggle} from '../dom';
+import {choice, download, make, say, slider, svgFile, svgPicture, table, toggle} from '../dom';
 import {jsonInput} from '../opening';
 import type {Tasks} from '../tasks';
 import {CurveCanvas, emptyWords} from './canvas';
@@ -102,6 +102,11 @@ export class CurvesView {
 
   open(document: CurveDocument): void {
     this.edit((s) => { s.document = structuredClone(document); s.selected = 0; s.point = -1; s.window = null; });
+  }
+
+  /** The drawing as it is now, as a PNG. */
+  picture(): Promise<Blob | null> {
+    return svgPicture(this.canvas.element, getComputedStyle(this.stage).backgroundColor);
   }
 
   openFile(k: number): void {

@@ -36,7 +36,7 @@ export class TerrainView {
   constructor(readonly files: FileInfo[], first: TerrainState, private edit: Edit, private tasks: Tasks, openFile: (file: number) => void, cameraMoved: (camera: number[]) => void) {
     this.state = first;
     this.scene = new TerrainScene(cameraMoved);
-    this.controls = new TerrainControls(files, edit, openFile, (format) => this.save(format), () => this.saveContours(), (x, y) => void this.askAt(x, y));
+    this.controls = new TerrainControls(files, edit, openFile, (format) => this.save(format), () => this.saveContours(), (x, y) => this.askAt(x, y));
     this.stage.append(this.scene.element, this.chart);
     this.scene.canvas.addEventListener('click', (event) => this.clicked(event));
     this.scene.canvas.addEventListener('keydown', (event) => {
@@ -221,13 +221,14 @@ export class TerrainView {
   }
 
   /** A place by its coordinates in the CRS, for the tool in hand. */
-  private async askAt(x: number, y: number): Promise<void> {
+  private askAt(x: number, y: number): void {
     const model = this.models()[0];
     if (!model) return;
-    const {words} = await ask('/api/terrain/at', {model, crs_x: x, crs_y: y});
-    const place: Place = [words.local_x as number, words.local_y as number];
-    this.controls.missed(!words.valid);
-    if (words.valid) this.use(place, words.z as number);
+    this.tasks.once('place', 'Asking', async (signal) => {
+      const {words} = await ask('/api/terrain/at', {model, crs_x: x, crs_y: y}, signal);
+      this.controls.missed(!words.valid);
+      if (words.valid) this.use([words.local_x as number, words.local_y as number], words.z as number);
+    });
   }
 
   private clicked(event: MouseEvent): void {
