@@ -4,18 +4,11 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/core/variants.h"
 #include "retalho/curve/convert.h"
 #include "retalho/curve/edit.h"
 
 namespace retalho {
-
-// One binary for all machines: the loader takes the variant that the processor can run.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define RETALHO_VARIANTS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define RETALHO_VARIANTS
-#endif
 
 namespace {
 

@@ -16,6 +16,7 @@
 
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/frame.h"
+#include "retalho/level/lanes.h"
 #include "retalho/level/patch_parts.h"
 #include "retalho/level/trace.h"
 
@@ -33,12 +34,10 @@ bool certify(const typename Patch::template Net<I>& net, const Frame& frame, Cer
   std::array<double, Patch::kGradients> du{}, dv{};
   Patch::template gradients<I>(net, du, dv);
   const auto test = [&](Vec2 d) {
-    double low = 1e300, size = 0;
-    for (std::size_t i = 0; i < Patch::kGradients; ++i) {
-      const double a = d.x * du[i], b = d.y * dv[i];
-      low = std::min(low, a + b);
-      size = std::max(size, std::abs(a) + std::abs(b));
-    }
+    double low = 0, least = 0, size = 0, high = 0;
+    range_of<Patch::kGradients>([&](std::size_t i) { return d.x * du[i] + d.y * dv[i]; }, low, high);
+    range_of<Patch::kGradients>([&](std::size_t i) { return std::abs(d.x * du[i]) + std::abs(d.y * dv[i]); }, least,
+                                size);
     if (!(low > 4e-15 * size)) return false;
     certificate = {d, Patch::kDegree * (low - 4e-15 * size)};
     return true;
@@ -101,11 +100,8 @@ class BoxTracer {
   std::size_t visit(const Box<I>& box, int from, int to, const Sides& sides) {
     ++trace_.boxes;
     trace_.depth = std::max(trace_.depth, box.depth);
-    I low = box.net[0], high = low;
-    for (const I b : box.net) {
-      low = b < low ? b : low;
-      high = b > high ? b : high;
-    }
+    I low{}, high{};
+    range_of<static_cast<std::size_t>(Patch::kOrdinates)>([&](std::size_t i) { return box.net[i]; }, low, high);
     narrow<I>(low, high, box.scale, box.per_scale, from, to);
     if (from >= to) return 0;
     const auto pairs = static_cast<std::size_t>(to - from);

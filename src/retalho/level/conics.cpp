@@ -1,6 +1,7 @@
 #include "retalho/level/conics.h"
 
 #include <array>
+#include <span>
 #include <utility>
 
 #include "retalho/core/error.h"
@@ -28,13 +29,13 @@ ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const 
   set.levels = std::move(levels);
   set.height_quantum = 1 / per_unit;
   const auto lift = [](Vec2 p) { return Vec3{p.x, p.y, 0}; };
-  for (const TracedLine& line : find_lines(trace)) {
+  const TracedLines traced = find_lines(trace);
+  for (const TracedLine& line : traced.lines) {
     context.check();
     ConicLine out{line.level, {}};
     out.curve.closed = line.closed;
-    std::uint32_t p = line.start;
     const std::uint32_t links = line.closed ? line.count : line.count - 1;
-    for (std::uint32_t i = 0; i < links; ++i, p = trace.next[p]) {
+    for (const std::uint32_t p : std::span(traced.order).subspan(line.first, links)) {
       const Vec2 a = trace.points[p], b = trace.points[trace.next[p]];
       if (a == b) continue;
       ConicLink link = trace.keep_conics ? trace.conics[p] : ConicLink{};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 
 #include "retalho/core/error.h"
 #include "retalho/level/bands.h"
@@ -25,16 +26,13 @@ void check(const std::vector<double>& levels, const ContourOptions& options) {
 }
 
 /// Copies lines out of the trace; of equal consecutive points one stays.
-void gather(const Trace& trace, const std::vector<TracedLine>& lines, RawLines& raw) {
+void gather(const Trace& trace, const TracedLines& traced, RawLines& raw) {
   ContourSet& set = raw.set;
-  std::size_t total = 0;
-  for (const TracedLine& line : lines) total += line.count;
-  set.points.reserve(total);
-  set.lines.reserve(lines.size());
-  for (const TracedLine& line : lines) {
+  set.points.reserve(traced.order.size());
+  set.lines.reserve(traced.lines.size());
+  for (const TracedLine& line : traced.lines) {
     ContourLine out{line.level, line.closed, set.points.size(), 0};
-    std::uint32_t p = line.start;
-    for (std::uint32_t i = 0; i < line.count; ++i, p = trace.next[p]) {
+    for (const std::uint32_t p : std::span(traced.order).subspan(line.first, line.count)) {
       if (set.points.size() > out.begin && set.points.back() == trace.points[p]) continue;
       set.points.push_back(trace.points[p]);
       if (!trace.cell.empty()) raw.cell.push_back(trace.cell[p]);

@@ -9,6 +9,7 @@
 
 #include "retalho/level/exact_roots.h"
 #include "retalho/level/frame.h"
+#include "retalho/level/lanes.h"
 #include "retalho/level/patch_parts.h"
 
 namespace retalho {
@@ -118,20 +119,18 @@ struct RectanglePatch {
   }
   template <class I>
   static SecondRanges second(const Net<I>& b) {
-    SecondRanges s{{1e300, -1e300}, {1e300, -1e300}, {1e300, -1e300}};
-    const auto take = [](std::array<double, 2>& range, I value) {
-      const auto x = static_cast<double>(value);
-      range[0] = std::min(range[0], x);
-      range[1] = std::max(range[1], x);
+    SecondRanges s;
+    const auto difference = [&](std::size_t i, std::size_t step) {
+      return static_cast<double>(b[i + 2 * step] - 2 * b[i + step] + b[i]);
     };
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 2; ++j) {
-        take(s.uu, b[4 * i + j + 2] - 2 * b[4 * i + j + 1] + b[4 * i + j]);
-        take(s.vv, b[4 * j + 8 + i] - 2 * b[4 * j + 4 + i] + b[4 * j + i]);
-      }
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
-        take(s.uv, b[4 * i + 5 + j] - b[4 * i + 4 + j] - b[4 * i + 1 + j] + b[4 * i + j]);
+    range_of<8>([&](std::size_t k) { return difference(4 * (k / 2) + k % 2, 1); }, s.uu[0], s.uu[1]);
+    range_of<8>([&](std::size_t k) { return difference(k, 4); }, s.vv[0], s.vv[1]);
+    range_of<9>(
+        [&](std::size_t k) {
+          const std::size_t i = 4 * (k / 3) + k % 3;
+          return static_cast<double>(b[i + 5] - b[i + 4] - b[i + 1] + b[i]);
+        },
+        s.uv[0], s.uv[1]);
     for (std::size_t i = 0; i < 2; ++i) {
       s.uu[i] *= 6;
       s.uv[i] *= 9;
@@ -141,19 +140,21 @@ struct RectanglePatch {
   }
   /// Value and both partial derivatives.
   static void evaluate(const Net<double>& b, Vec2 p, double& f, Vec2& derivatives) {
-    const double s = 1 - p.x, x0 = s * s * s, x1 = 3 * s * s * p.x, x2 = 3 * s * p.x * p.x, x3 = p.x * p.x * p.x;
-    const double d0 = -3 * s * s, d1 = 3 * s * s - 6 * s * p.x, d2 = 6 * s * p.x - 3 * p.x * p.x, d3 = 3 * p.x * p.x;
-    const double t = 1 - p.y, y = p.y;
+    const double s = 1 - p.x, x = p.x, t = 1 - p.y, y = p.y;
+    const std::array<double, 4> bx{s * s * s, 3 * s * s * x, 3 * s * x * x, x * x * x};
+    const std::array<double, 4> dx{-3 * s * s, 3 * s * s - 6 * s * x, 6 * s * x - 3 * x * x, 3 * x * x};
     const std::array<double, 4> by{t * t * t, 3 * t * t * y, 3 * t * y * y, y * y * y};
     const std::array<double, 4> dy{-3 * t * t, 3 * t * t - 6 * t * y, 6 * t * y - 3 * y * y, 3 * y * y};
-    f = 0;
-    derivatives = {};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double row = x0 * b[4 * i] + x1 * b[4 * i + 1] + x2 * b[4 * i + 2] + x3 * b[4 * i + 3];
-      f += by[i] * row;
-      derivatives.y += dy[i] * row;
-      derivatives.x += by[i] * (d0 * b[4 * i] + d1 * b[4 * i + 1] + d2 * b[4 * i + 2] + d3 * b[4 * i + 3]);
-    }
+    // Down the columns first: four sums side by side.
+    std::array<double, 4> column{}, slope{};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) {
+        column[j] += by[i] * b[4 * i + j];
+        slope[j] += dy[i] * b[4 * i + j];
+      }
+    f = (bx[0] * column[0] + bx[1] * column[1]) + (bx[2] * column[2] + bx[3] * column[3]);
+    derivatives = {(dx[0] * column[0] + dx[1] * column[1]) + (dx[2] * column[2] + dx[3] * column[3]),
+                   (bx[0] * slope[0] + bx[1] * slope[1]) + (bx[2] * slope[2] + bx[3] * slope[3])};
   }
   /// How many steps of d fit into the patch from p.
   static double room(Vec2 p, Vec2 d) {

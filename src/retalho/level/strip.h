@@ -9,6 +9,7 @@
 
 #include "retalho/core/vec.h"
 #include "retalho/level/frame.h"
+#include "retalho/level/lanes.h"
 
 namespace retalho {
 
@@ -66,12 +67,9 @@ template <class Patch>
 bool grows_across(const PatchSlopes<Patch>& patch, const Frame& frame, const Strip& strip, int depth, double scale,
                   double& steepest) {
   const Vec2 d = frame.direction(strip.left());
-  double low = 1e300, high = -1e300;
-  for (std::size_t i = 0; i < patch.du.size(); ++i) {
-    const double growth = d.x * patch.du[i] + d.y * patch.dv[i];
-    low = growth < low ? growth : low;
-    high = growth > high ? growth : high;
-  }
+  double low = 0, high = 0;
+  range_of<static_cast<std::size_t>(Patch::kGradients)>(
+      [&](std::size_t i) { return d.x * patch.du[i] + d.y * patch.dv[i]; }, low, high);
   if (low > 1e-12 * (std::abs(d.x) * patch.largest_u + std::abs(d.y) * patch.largest_v)) {
     steepest = std::max(steepest, Patch::kDegree * high / scale);
     return true;

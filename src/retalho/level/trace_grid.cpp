@@ -7,6 +7,7 @@
 
 #include "retalho/core/parallel.h"
 #include "retalho/level/box_tracer.h"
+#include "retalho/level/row_ranges.h"
 
 namespace retalho {
 namespace {
@@ -43,7 +44,8 @@ class StripTracer {
         boxes_(levels, tolerance, true, strip.trace),
         low_(static_cast<std::size_t>(grid.columns)),
         high_(low_.size()),
-        candidates_(low_.size()) {}
+        candidates_(low_.size()),
+        marked_(low_.size()) {}
 
   void run(int first, int last) {
     trace_row(first, above_);
@@ -61,37 +63,19 @@ class StripTracer {
  private:
   /// Sets low_ and high_ to the range of the edges' ordinates, node and tangent at both ends.
   void bound_edges(const std::int32_t* z, const std::int32_t* d, std::size_t step, std::size_t n) {
-    for (std::size_t c = 0; c < n; ++c) {
-      const std::int32_t a = z[c], b = z[c] + d[c], e = z[c + step] - d[c + step], f = z[c + step];
-      low_[c] = std::min(std::min(a, b), std::min(e, f));
-      high_[c] = std::max(std::max(a, b), std::max(e, f));
-    }
+    bound_edge_row(z, d, step, n, low_.data(), high_.data());
   }
   void bound_patches(int row) {
-    const std::size_t n = static_cast<std::size_t>(grid_.columns) - 1, o = grid_.node(0, row), w = n + 1;
-    const std::int32_t *z = &grid_.z[o], *u = &grid_.u[o], *v = &grid_.v[o], *t = &grid_.t[o];
-    for (std::size_t c = 0; c < n; ++c) {
-      const auto corner = [](std::int32_t h, std::int32_t a, std::int32_t b, std::int32_t m, std::int32_t& low,
-                             std::int32_t& high) {
-        const std::int32_t p = h + a, q = h + b, r = p + b + m;
-        low = std::min(std::min(h, p), std::min(q, r));
-        high = std::max(std::max(h, p), std::max(q, r));
-      };
-      std::int32_t l0 = 0, h0 = 0, l1 = 0, h1 = 0, l2 = 0, h2 = 0, l3 = 0, h3 = 0;
-      corner(z[c], u[c], v[c], t[c], l0, h0);
-      corner(z[c + 1], -u[c + 1], v[c + 1], -t[c + 1], l1, h1);
-      corner(z[c + w], u[c + w], -v[c + w], -t[c + w], l2, h2);
-      corner(z[c + w + 1], -u[c + w + 1], -v[c + w + 1], t[c + w + 1], l3, h3);
-      low_[c] = std::min(std::min(l0, l1), std::min(l2, l3));
-      high_[c] = std::max(std::max(h0, h1), std::max(h2, h3));
-    }
+    const std::size_t n = static_cast<std::size_t>(grid_.columns) - 1, o = grid_.node(0, row);
+    bound_patch_row(&grid_.z[o], &grid_.u[o], &grid_.v[o], &grid_.t[o], n + 1, n, low_.data(), high_.data());
   }
   /// The places whose range may hold a level, into candidates_; how many.
   std::size_t select(std::size_t n) {
+    mark_ranges(low_.data(), high_.data(), n, levels_, marked_.data());
     std::size_t found = 0;
     for (std::size_t c = 0; c < n; ++c) {
       candidates_[found] = static_cast<std::uint32_t>(c);
-      found += static_cast<std::size_t>(levels_.may_cross(2.0 * low_[c], 2.0 * high_[c]));
+      found += marked_[c];
     }
     return found;
   }
@@ -187,6 +171,7 @@ class StripTracer {
   EdgeRow above_, below_, beside_;
   std::vector<std::int32_t> low_, high_;
   std::vector<std::uint32_t> candidates_;
+  std::vector<std::uint8_t> marked_;
 };
 
 /// Strips one behind the other. A root on the row between two strips was found by both: the second's is the first's.

@@ -1,0 +1,11 @@
+// A function compiled several times, so that one binary runs on all machines and uses what each offers: the loader
+// takes the variant that the processor can run. All variants give the same bits: none fuses multiplications and
+// additions.
+#pragma once
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define RETALHO_VARIANTS __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define RETALHO_VARIANTS
+#endif
