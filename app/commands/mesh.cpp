@@ -61,7 +61,8 @@ void run(const Program& program, const Options& options) {
           const std::vector<PatchJoin> joins = find_joins(shape.patches, surfaces);
           joined = std::all_of(joins.begin(), joins.end(), [](const PatchJoin& join) { return join.watertight; });
           double deviation = 0;
-          TriangleMesh triangles = mesh_patch_surfaces(shape.patches, surfaces, tolerance, &deviation);
+          TriangleMesh triangles =
+              mesh_patch_surfaces(shape.patches, surfaces, tolerance, &deviation, nullptr, context);
           if (deviation > tolerance) program.say(fmt::format("triangles within {:.3g} of the surface", deviation));
           tolerance = deviation;
           return triangles;

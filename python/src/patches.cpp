@@ -269,8 +269,8 @@ void add_patches(py::module_& module) {
       .def(
           "mesh",
           [](const Patches& s, double tolerance, int threads, const py::object& progress) {
-            return std::make_shared<TriangleMesh>(run(Running{threads, progress}, [&](const Context&) {
-              return mesh_patch_surfaces(s.patches(), s.surfaces(), tolerance);
+            return std::make_shared<TriangleMesh>(run(Running{threads, progress}, [&](const Context& context) {
+              return mesh_patch_surfaces(s.patches(), s.surfaces(), tolerance, nullptr, nullptr, context);
             }));
           },
           py::kw_only(), py::arg("tolerance") = 0.0, py::arg("threads") = 0, py::arg("progress") = py::none(),

@@ -84,7 +84,7 @@ TriangleMesh mesh_patches(std::span<const Patch> patches, bool weld) {
 }
 
 TriangleMesh mesh_patch_surfaces(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
-                                 double tolerance, double* deviation, std::size_t* factor) {
+                                 double tolerance, double* deviation, std::size_t* factor, const Context& context) {
   std::vector<Patch> fine;
   for (std::size_t n = 1;; n *= 2) {
     fine.clear();
@@ -92,13 +92,16 @@ TriangleMesh mesh_patch_surfaces(std::span<const Patch> patches, std::span<const
     for (std::size_t i = 0; i < patches.size(); ++i) {
       fine.push_back(refine(patches[i], surfaces[i], n));
       const Domain& domain = fine[i].domain;
-      for (const auto& t : domain.triangles)
+      std::size_t looked = 0;
+      for (const auto& t : domain.triangles) {
+        if (++looked % 256 == 0) context.check();  // a recovered point may cost tens of microseconds
         for (const auto& [a, b, c] :
              {std::array<double, 3>{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}}) {
           const Vec2 uv = a * domain.parameters[t[0]] + b * domain.parameters[t[1]] + c * domain.parameters[t[2]];
           const Vec3 flat = a * fine[i].positions[t[0]] + b * fine[i].positions[t[1]] + c * fine[i].positions[t[2]];
           worst = std::max(worst, norm(surfaces[i].point(uv) - flat));
         }
+      }
     }
     if (worst > tolerance && tolerance > 0 && n < 64) continue;
     if (deviation) *deviation = worst;

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "retalho/core/context.h"
 #include "retalho/mesh/mesh.h"
 #include "retalho/patch/surface.h"
 
@@ -15,7 +16,9 @@ TriangleMesh mesh_patches(std::span<const Patch> patches, bool weld = true);
 
 /// One mesh of all surfaces, every node's triangle cut into n^2 with the least n of 1, 2, 4, ... 64 for which the
 /// triangles' middles are within `tolerance` of the surface (0: n = 1). `deviation` gets what was reached, `factor` n.
+/// `context` is asked for every few hundred triangles. Throws Interrupted.
 TriangleMesh mesh_patch_surfaces(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
-                                 double tolerance, double* deviation = nullptr, std::size_t* factor = nullptr);
+                                 double tolerance, double* deviation = nullptr, std::size_t* factor = nullptr,
+                                 const Context& context = {});
 
 }  // namespace retalho

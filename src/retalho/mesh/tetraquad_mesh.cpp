@@ -127,8 +127,11 @@ class Marcher {
 
   TriangleMesh run(const Context& context) {
     const TetMesh& tets = field_.surface().mesh;
+    // A cut tetrahedron's work grows with the cube of the divisions.
+    const auto parts = static_cast<std::size_t>(divisions_);
+    const std::size_t every = std::max<std::size_t>(1, 1024 / (parts * parts * parts));
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
-      if (t % 1024 == 0) context.check();
+      if (t % every == 0) context.check();
       const TetCubic& c = field_.ordinates(t);
       const auto [low, high] = bounds(c);
       const double rounding = 1e-13 * std::max(-low, high);  // neighbours must not disagree about a shared face

@@ -77,7 +77,7 @@ CgNotes solve_cg(const BlockMatrix& matrix, std::span<const double> right, std::
   while (true) {
     notes.residual = std::sqrt(std::max(0.0, rho) / whole);
     if (notes.residual <= options.tolerance || notes.iterations >= options.most) return notes;
-    if (notes.iterations % 16 == 0) context.check();
+    context.check();
     matrix.multiply(p, q);
     const double curvature = dot(p, q);
     if (!(curvature > 0)) return notes;  // what is left is rounding
