@@ -360,8 +360,8 @@ class TetraQuad:
     def fit(
         points: ArrayLike, normals: ArrayLike | None = None, *, resolution: int = 32, smoothness: float = 1.0,
         max_error: float | None = None, quantile: float = 0.99, adaptive: int | None = None,
-        split: Literal["five", "kuhn"] = "five", neighbours: int = 16, threads: int = 0,
-        progress: Progress | None = None,
+        split: Literal["five", "kuhn"] = "five", solver: Literal["cholesky", "cg", "local"] = "cholesky",
+        closed: bool = False, neighbours: int = 16, threads: int = 0, progress: Progress | None = None,
     ) -> TetraQuad: ...
     def cast(
         self, origins: ArrayLike, directions: ArrayLike, *, near: float = 0.0, far: float = ..., threads: int = 0,

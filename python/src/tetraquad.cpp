@@ -35,8 +35,16 @@ struct Asked {
   double smoothness = 1, quantile = 0.99;
   std::optional<double> max_error;
   std::optional<std::size_t> adaptive;
-  std::string split = "five";
+  std::string split = "five", solver = "cholesky";
+  bool closed = false;
 };
+
+TetraQuadSolver parse_solver(const std::string& name) {
+  if (name == "cholesky") return TetraQuadSolver::cholesky;
+  if (name == "cg") return TetraQuadSolver::cg;
+  if (name == "local") return TetraQuadSolver::local;
+  throw UsageError("solver must be 'cholesky', 'cg' or 'local', not '" + name + "'", {}, "solver");
+}
 
 Fitted fit_cloud(PointCloud cloud, const Asked& asked, const Context& context) {
   if (cloud.normals.empty())
@@ -45,6 +53,8 @@ Fitted fit_cloud(PointCloud cloud, const Asked& asked, const Context& context) {
   options.resolution = asked.resolution;
   options.smoothness = asked.smoothness;
   options.split = asked.split == "kuhn" ? TetSplit::kuhn : TetSplit::five;
+  options.solver = parse_solver(asked.solver);
+  options.closed = asked.closed;
   Fitted fitted;
   if (asked.adaptive) {
     TetraQuadAdaptiveOptions budget;
@@ -66,6 +76,7 @@ Fitted fit_cloud(PointCloud cloud, const Asked& asked, const Context& context) {
 py::object fit(const py::object& points, const py::object& normals, const Asked& asked, const Running& running) {
   if (asked.split != "five" && asked.split != "kuhn")
     throw UsageError("split must be 'five' or 'kuhn', not '" + asked.split + "'", {}, "split");
+  parse_solver(asked.solver);
   PointCloud cloud;
   cloud.positions = as_points3(points, "points");
   if (!normals.is_none()) {
@@ -199,7 +210,8 @@ void add_tetraquad(py::module_& module) {
       "fit",
       [](const py::object& points, const py::object& normals, int resolution, double smoothness,
          std::optional<double> max_error, double quantile, std::optional<std::size_t> adaptive,
-         const std::string& split, int neighbours, int threads, const py::object& progress) {
+         const std::string& split, const std::string& solver, bool closed, int neighbours, int threads,
+         const py::object& progress) {
         Asked asked;
         asked.resolution = resolution;
         asked.smoothness = smoothness;
@@ -207,17 +219,21 @@ void add_tetraquad(py::module_& module) {
         asked.quantile = quantile;
         asked.adaptive = adaptive;
         asked.split = split;
+        asked.solver = solver;
+        asked.closed = closed;
         asked.neighbours = neighbours;
         return fit(points, normals, asked, {threads, progress});
       },
       py::arg("points"), py::arg("normals") = py::none(), py::kw_only(), py::arg("resolution") = 32,
       py::arg("smoothness") = 1.0, py::arg("max_error") = py::none(), py::arg("quantile") = 0.99,
-      py::arg("adaptive") = py::none(), py::arg("split") = "five", py::arg("neighbours") = 16, py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
+      py::arg("adaptive") = py::none(), py::arg("split") = "five", py::arg("solver") = "cholesky",
+      py::arg("closed") = false, py::arg("neighbours") = 16, py::arg("threads") = 0, py::arg("progress") = py::none(),
       "Points (n, 3) with outward normals (n, 3; None: estimated from so many neighbours) to a surface.\n\n"
       "resolution: cubes along the longest side. max_error: the coarsest resolution at which `quantile` of the points "
       "are that near, instead. adaptive: at most so many coefficients, smaller tetrahedra where the points ask for "
-      "them (cannot be saved). smoothness: 0.1 for clean points, 10 for noisy ones. What is doubtful is a warning. "
+      "them. smoothness: 0.1 for clean points, 10 for noisy ones. solver: 'cholesky'; 'cg' needs less memory and "
+      "more time; 'local' solves nothing, fast and rough. closed: the shape is known to be closed, so holes of any "
+      "size are closed. What is doubtful is a warning. "
       "40,000 points at 24: about 2 s.");
   tetraquad.def(
       "cast",

@@ -5,6 +5,7 @@ import json
 import pathlib
 import pickle
 import subprocess
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -254,6 +255,28 @@ def test_tetraquads(tmp_path: pathlib.Path) -> None:
         surface.cast(np.zeros((5, 3)), np.zeros((3, 3)))
     with pytest.raises(ValueError):
         retalho.TetraQuad.fit(p, p, resolution=1)
+
+
+def test_tetraquads_by_other_ways(tmp_path: pathlib.Path) -> None:
+    rng = np.random.default_rng(3)
+    p = rng.normal(size=(4000, 3))
+    p /= np.linalg.norm(p, axis=1)[:, None]
+    d = rng.normal(size=(500, 3))
+    d /= np.linalg.norm(d, axis=1)[:, None]
+    for solver, error in (("cholesky", 1e-4), ("cg", 1e-3), ("local", 1e-2)):
+        surface = retalho.TetraQuad.fit(p, p, resolution=12, solver=solver)  # type: ignore[arg-type]
+        assert np.abs(surface.cast(3 * d, -d).t - 2).max() < error, solver
+    with pytest.raises(ValueError, match="solver must be"):
+        retalho.TetraQuad.fit(p, p, solver="svd")  # type: ignore[arg-type]
+    cut = p[p[:, 2] < 0.7]
+    assert retalho.TetraQuad.fit(cut, cut, resolution=12, closed=True).mesh().check()["open_edges"] == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert retalho.TetraQuad.fit(cut, cut, resolution=12).mesh().check()["open_edges"] > 0
+    adaptive = retalho.TetraQuad.fit(p, p, adaptive=20000)
+    adaptive.save(tmp_path / "a.retalho")
+    again = retalho.load(tmp_path / "a.retalho")
+    assert isinstance(again, retalho.TetraQuad) and np.array_equal(again.cast(3 * d, -d).t, adaptive.cast(3 * d, -d).t)
 
 
 def test_equal_to_the_program(tmp_path: pathlib.Path, program: pathlib.Path, data: Find) -> None:
