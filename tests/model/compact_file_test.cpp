@@ -278,6 +278,19 @@ TEST(CompactFit, TheFitMakesUpForTheRounding) {
   EXPECT_LT(rmse(true), 0.97 * rmse(false));
 }
 
+TEST(CompactFit, SlopesInTheFitMakeSlopesTruerForNoMoreBytes) {
+  const Raster raster = hills(120, 90, false);
+  const auto fit = [&](double weight) {
+    const CompactModel model = fit_compact(raster, {.vertices = 150, .slope_weight = weight});
+    return std::pair{model.bytes.size(), assess(model.terrain, raster)};
+  };
+  const auto [bytes, with] = fit(CompactOptions{}.slope_weight);
+  const auto [bytes_without, without] = fit(0);
+  EXPECT_LT(with.slope_rmse, 0.97 * without.slope_rmse);
+  EXPECT_LT(100 * bytes, 102 * bytes_without);
+  EXPECT_LT(with.rmse, 1.05 * without.rmse);
+}
+
 TEST(CompactFit, RefusesWhatMakesNoSense) {
   const Raster raster = hills(20, 20, false);
   EXPECT_THROW(fit_compact(raster, {}), UsageError);

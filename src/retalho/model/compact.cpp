@@ -73,7 +73,9 @@ CompactFrameFacts facts_of(const Raster& raster, const CompactOptions& options) 
 }
 
 HeldFitOptions fit_options(const CompactOptions& options) {
-  return {.surface = options.surface, .heights_only = options.heights_only, .slope_weight = options.slope_weight};
+  return {.surface = options.surface,
+          .heights_only = options.heights_only,
+          .slope_weight = options.heights_only ? 0 : options.slope_weight};
 }
 
 double rmse_of(const std::vector<double>& errors) {

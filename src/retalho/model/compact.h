@@ -19,7 +19,7 @@ struct CompactOptions {
   double max_error = 0;       ///< height units: every valid cell within it of the surface; 0: only the budget counts
   std::size_t vertices = 0;   ///< the budget, 0: none. With a budget and max_error the error may be larger
   double height_step = 0;     ///< 0: chosen, by max_error or else by the fit's own error
-  double slope_weight = 0;    ///< as in LeastSquaresOptions
+  double slope_weight = 0.1;  ///< as in LeastSquaresOptions; not of heights_only
   Effort effort = Effort::normal;  ///< of the refinement
 };
 
