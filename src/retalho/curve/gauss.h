@@ -22,8 +22,9 @@ template <typename Function>
 double integrate_below(const Function& f, double a, double b, double whole, double tolerance, int level) {
   const double middle = 0.5 * (a + b);
   const double left = gauss_panel(f, a, middle), right = gauss_panel(f, middle, b);
-  // Below rounding's share nothing can be gained.
-  if (std::abs(left + right - whole) <= tolerance + 1e-16 * (std::abs(left) + std::abs(right)) || level >= 24)
+  const double change = std::abs(left + right - whole);
+  // Below rounding's share nothing can be gained, and of what is not finite halves are no better: 2^24 of them.
+  if (change <= tolerance + 1e-16 * (std::abs(left) + std::abs(right)) || !std::isfinite(change) || level >= 24)
     return left + right;
   return integrate_below(f, a, middle, left, tolerance / 2, level + 1) +
          integrate_below(f, middle, b, right, tolerance / 2, level + 1);
