@@ -98,7 +98,7 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
           "--effort", flags.effort,
           "How long the vertices of --refine surface are moved about: fast (not at all), normal (default) or best; a "
           "million cells with a vertex for 3 % of them take 2 s, 40 s and 2 minutes on one core, fine tolerances "
-          "up to 90 s")
+          "longer")
       ->type_name("HOW");
   command
       .add_option("--format", flags.format,
