@@ -41,7 +41,11 @@ double polygon_length(const CurveSegment& s) {
 
 double segment_length(const CurveSegment& s, double t0, double t1, const std::vector<double>& ends, double relative) {
   const Speed speed(s);
-  const double tolerance = std::max(relative, 1e-15) * polygon_length(s);
+  // Far from the origin the speed itself is rounded, and panels would be halved for ever after nothing.
+  double largest = 0;
+  for (const auto& p : s.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double rounding = 4e-16 * s.degree() * largest;
+  const double tolerance = std::max(std::max(relative, 1e-15) * polygon_length(s), rounding);
   double total = 0;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double a = std::max(t0, ends[i]), b = std::min(t1, ends[i + 1]);
