@@ -28,7 +28,7 @@ constexpr double kShare = 0.75;
 constexpr int kTimedOut = 124;
 constexpr auto kLook = std::chrono::milliseconds(10);  // a look costs 10 us
 constexpr double kBrim = 0.95;                         // of the limit: what is taken until the work hears of it
-constexpr int kPatience = 10;                          // looks after the flag was set, until force
+constexpr int kPatience = 5;                           // looks after the flag was set, until force
 constexpr double kLongest = 1e8;                       // seconds: three years; what the timer takes
 
 std::atomic<bool> late{false}, heavy{false};
