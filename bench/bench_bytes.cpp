@@ -22,6 +22,7 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -212,7 +213,11 @@ int main(int count, char** words) {
     }
     if (!fs::exists(rows)) measure_all(rows, 250'000);
     const auto found = values(load(rows));
-    std::cout << json{{"value", found.at(options["--value"])}}.dump() << '\n';
+    const auto value = found.find(options["--value"]);
+    if (value == found.end())
+      throw std::runtime_error("no rows for " + options["--value"] + " in " + rows.string() +
+                               ": measure the grids that it needs (scripts/bytes-all)");
+    std::cout << json{{"value", value->second}}.dump() << '\n';
   } catch (const std::exception& e) {
     std::cerr << "bench_bytes: " << e.what() << '\n';
     return 1;
