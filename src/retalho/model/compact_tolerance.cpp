@@ -38,7 +38,10 @@ class Loop {
     for (int k = 0; k < kReweightings && fit_.reweigh(kGoal * tolerance_); ++k) fit_.solve(kLoose, 60);
     weights_ = fit_.cell_weights();
     FitSource source(fit_);
-    const CompactEncoding first = encode_compact(facts_, cells_, source, context_);
+    // Its size sets a rate below: without the CRS, whose text is no part of what is weighed there.
+    CompactFrameFacts bare = facts_;
+    bare.georef.crs_wkt.clear();
+    const CompactEncoding first = encode_compact(bare, cells_, source, context_);
     measure_steps();
     for (int round = 0;; ++round) {
       context_.check();
