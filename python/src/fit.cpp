@@ -118,16 +118,13 @@ Terrain fit_raster(const Raster& raster, const Asked& asked, const SurfaceOption
   const std::string fit = asked.fit.value_or("interpolate");
   if (refines_surface(asked) && (budget.max_error > 0 || budget.vertices > 0)) {
     const std::string effort = asked.effort.value_or("normal");
-    const RefineRounds rounds = rounds_of(effort == "fast"   ? Effort::fast
-                                          : effort == "best" ? Effort::best
-                                                             : Effort::normal);
-    terrain = refine_surface(raster,
-                             {.surface = surface.surface,
-                              .max_error = budget.max_error,
-                              .vertices = budget.vertices,
-                              .relocations = rounds.relocations,
-                              .exchanges = rounds.exchanges},
-                             context);
+    terrain = refine_surface(
+        raster,
+        with_effort({.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices},
+                    effort == "fast"   ? Effort::fast
+                    : effort == "best" ? Effort::best
+                                       : Effort::normal),
+        context);
   } else {
     terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, context);
     if (fit != "interpolate")

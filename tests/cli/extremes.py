@@ -4,7 +4,6 @@ exit 2 or 3 and no output; never a failure inside, a signal, or an output that h
 
   extremes.py --program FILE
 """
-import argparse
 import array
 import concurrent.futures
 import json
@@ -15,6 +14,8 @@ import re
 import subprocess
 import sys
 import tempfile
+
+import checks
 
 COMMANDS = {
     "info": ["info", "g.flt"],
@@ -119,19 +120,13 @@ def look(program, name, grid):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    options = parser.parse_args()
-    program = os.path.abspath(options.program)
+    program = checks.program(__doc__)
     failures = []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for found, words in pool.map(lambda item: look(program, *item), GRIDS.items()):
             failures += found
             print(words)
-    for failure in failures:
-        print("FAILED", failure)
-    print(f"{len(GRIDS)} grids, {len(COMMANDS)} commands; {len(failures)} failures")
-    return 1 if failures else 0
+    return checks.verdict(f"{len(GRIDS)} grids, {len(COMMANDS)} commands", failures)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@
 
 A row: the command, the exit code, a part of the message. Files are named as in FILES; `{x}` stands for nothing else.
 """
-import argparse
 import concurrent.futures
 import os
 import pathlib
@@ -13,6 +12,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+import checks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -166,10 +167,7 @@ ROWS = [
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    options = parser.parse_args()
-    program = os.path.abspath(options.program)
+    program = checks.program(__doc__)
     failures = []
     with tempfile.TemporaryDirectory(prefix="messages-") as home:
         stock = pathlib.Path(home)
@@ -192,10 +190,7 @@ def main():
         if left:
             failures.append(f"left behind: {left}")
         shutil.rmtree(stock / "d", ignore_errors=True)
-    for failure in sorted(failures):
-        print("FAILED", failure)
-    print(f"{len(ROWS)} messages; {len(failures)} failures")
-    return 1 if failures else 0
+    return checks.verdict(f"{len(ROWS)} messages", failures)
 
 
 if __name__ == "__main__":

@@ -177,15 +177,11 @@ CompactModel fit_compact(const Raster& raster, const CompactOptions& options, co
     throw UsageError("heights alone are refined to a number of vertices, not to a largest error", {}, "max_error");
   // Vertices of a surface whose gradients follow its heights: those of the flat one are the best that are known.
   const SurfaceKind placed = options.heights_only ? SurfaceKind::linear : options.surface;
-  const RefineRounds rounds = rounds_of(options.effort);
-  const Terrain terrain = refine_surface(raster,
-                                         {.surface = placed,
-                                          .max_error = options.max_error,
-                                          .vertices = options.vertices,
-                                          .relocations = rounds.relocations,
-                                          .exchanges = rounds.exchanges,
-                                          .slope_weight = options.slope_weight},
-                                         context);
+  const SurfaceRefineOptions refined{.surface = placed,
+                                     .max_error = options.max_error,
+                                     .vertices = options.vertices,
+                                     .slope_weight = options.slope_weight};
+  const Terrain terrain = refine_surface(raster, with_effort(refined, options.effort), context);
   return options.max_error > 0 ? by_tolerance(cells_of(terrain, raster), raster, options, context)
                                : by_budget(cells_of(terrain, raster), raster, options, context);
 }

@@ -58,15 +58,11 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
 
 }  // namespace
 
-RefineRounds rounds_of(Effort effort) {
-  switch (effort) {
-    case Effort::fast:
-      return {0, 0};
-    case Effort::best:
-      return {5, 25};
-    default:
-      return {SurfaceRefineOptions{}.relocations, SurfaceRefineOptions{}.exchanges};
-  }
+SurfaceRefineOptions with_effort(SurfaceRefineOptions options, Effort effort) {
+  const SurfaceRefineOptions normal;
+  options.relocations = effort == Effort::fast ? 0 : effort == Effort::best ? 5 : normal.relocations;
+  options.exchanges = effort == Effort::fast ? 0 : effort == Effort::best ? 25 : normal.exchanges;
+  return options;
 }
 
 void better(FitState& state, int relocations, int exchanges, const Context& context) {

@@ -14,12 +14,6 @@ namespace retalho {
 /// How long the vertices are moved about: none of it, some, or much. What it costs: docs/smooth.md.
 enum class Effort : std::uint8_t { fast, normal, best };
 
-/// What an effort is: sweeps of relocation, then rounds of exchange.
-struct RefineRounds {
-  int relocations, exchanges;
-};
-RefineRounds rounds_of(Effort effort);
-
 struct SurfaceRefineOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
   double max_error = 0;       ///< height units: every valid cell within it of the surface; 0: only the budget counts
@@ -31,6 +25,9 @@ struct SurfaceRefineOptions {
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions
   double fairness = 1e-5;
 };
+
+/// The same with the relocations and exchanges of an effort.
+SurfaceRefineOptions with_effort(SurfaceRefineOptions options, Effort effort);
 
 /// Vertices are cells, inserted at the centroids of the squared errors, moved, removed and inserted elsewhere; heights
 /// and gradients of all are fitted to all valid cells after each step, and no exchange or relocation that makes the
