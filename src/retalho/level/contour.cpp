@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "retalho/core/error.h"
+#include "retalho/core/parallel.h"
 #include "retalho/level/bands.h"
 #include "retalho/level/clip.h"
 #include "retalho/level/fixed_grid.h"
@@ -26,25 +28,50 @@ void check(const std::vector<double>& levels, const ContourOptions& options) {
 }
 
 /// Copies lines out of the trace; of equal consecutive points one stays.
-void gather(const Trace& trace, const TracedLines& traced, RawLines& raw) {
+void gather(const Trace& trace, const TracedLines& traced, RawLines& raw, const Context& context) {
   ContourSet& set = raw.set;
-  set.points.reserve(traced.order.size());
-  set.lines.reserve(traced.lines.size());
-  for (const TracedLine& line : traced.lines) {
-    ContourLine out{line.level, line.closed, set.points.size(), 0};
-    for (const std::uint32_t p : std::span(traced.order).subspan(line.first, line.count)) {
-      if (set.points.size() > out.begin && set.points.back() == trace.points[p]) continue;
-      set.points.push_back(trace.points[p]);
-      if (!trace.cell.empty()) raw.cell.push_back(trace.cell[p]);
-    }
-    if (out.closed && set.points.size() > out.begin + 1 && set.points.back() == set.points[out.begin]) {
-      set.points.pop_back();
-      if (!trace.cell.empty()) raw.cell.pop_back();
-    }
-    out.end = set.points.size();
-    set.lines.push_back(out);
-    raw.ends.push_back({line.start, line.stop});
+  const bool cells = !trace.cell.empty();
+  set.points.resize(traced.order.size());
+  if (cells) raw.cell.resize(traced.order.size());
+  set.lines.resize(traced.lines.size());
+  raw.ends.resize(traced.lines.size());
+  // Every line has its place from the start; lines that turn out shorter leave gaps, closed below.
+  std::vector<std::size_t> place(traced.lines.size());
+  std::size_t total = 0;
+  for (std::size_t l = 0; l < traced.lines.size(); ++l) {
+    place[l] = total;
+    total += traced.lines[l].count;
   }
+  parallel_chunks(traced.lines.size(), 256, context, [&](std::size_t from, std::size_t to) {
+    for (std::size_t l = from; l < to; ++l) {
+      const TracedLine& line = traced.lines[l];
+      const std::size_t begin = place[l];
+      std::size_t end = begin;
+      for (const std::uint32_t p : std::span(traced.order).subspan(line.first, line.count)) {
+        if (end > begin && set.points[end - 1] == trace.points[p]) continue;
+        if (cells) raw.cell[end] = trace.cell[p];
+        set.points[end++] = trace.points[p];
+      }
+      if (line.closed && end > begin + 1 && set.points[end - 1] == set.points[begin]) --end;
+      set.lines[l] = {line.level, line.closed, begin, end};
+      raw.ends[l] = {line.start, line.stop};
+    }
+  });
+  std::size_t write = 0;
+  for (ContourLine& line : set.lines) {
+    const std::size_t n = line.end - line.begin;
+    if (write != line.begin) {
+      std::copy_n(set.points.begin() + static_cast<std::ptrdiff_t>(line.begin), n,
+                  set.points.begin() + static_cast<std::ptrdiff_t>(write));
+      if (cells)
+        std::copy_n(raw.cell.begin() + static_cast<std::ptrdiff_t>(line.begin), n,
+                    raw.cell.begin() + static_cast<std::ptrdiff_t>(write));
+    }
+    line.begin = write;
+    line.end = write += n;
+  }
+  set.points.resize(write);
+  if (cells) raw.cell.resize(write);
 }
 
 void fill(ContourExtras* extras, const Trace& trace) {
@@ -58,14 +85,14 @@ double raw_tolerance(const ContourOptions& options) {
 }
 
 RawLines raw_lines(const Trace& trace, std::vector<double> levels, const ContourOptions& options, double quantum,
-                   ContourExtras* extras) {
+                   ContourExtras* extras, const Context& context) {
   fill(extras, trace);
   RawLines lines;
   lines.raw = raw_tolerance(options);
   lines.set.tolerance = options.tolerance;
   lines.set.height_quantum = quantum;
   lines.set.singular = trace.singular;
-  gather(trace, find_lines(trace), lines);
+  gather(trace, find_lines(trace), lines, context);
   lines.set.levels = std::move(levels);
   return lines;
 }
@@ -77,7 +104,7 @@ ContourSet trace_fixed(const FixedGrid& fixed, std::vector<double> levels, const
   const bool want_bands = extras != nullptr && extras->want_bands;
   std::vector<BorderEdge> border;
   Trace trace = trace_grid(fixed, fixed_levels, raw_tolerance(options), want_bands ? &border : nullptr, context);
-  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / fixed.per_unit, extras);
+  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / fixed.per_unit, extras, context);
   if (!want_bands) trace = {};
   if (options.simplify) simplify_lines(lines, fixed, fixed_levels, context);
   if (want_bands)
@@ -131,7 +158,7 @@ ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, co
   context.report("contour", 0);
   OuterRoots outer;
   Trace trace = trace_terrain(terrain, edges, per_unit, fixed_levels, raw_tolerance(options), outer, context);
-  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / per_unit, extras);
+  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / per_unit, extras, context);
   if (!want_bands) trace = {};
   if (options.simplify) simplify_lines(lines, terrain, edges, per_unit, fixed_levels, context);
   std::vector<DirectedBorder> outline;
