@@ -6,118 +6,29 @@
 #include <algorithm>
 #include <cmath>
 
-#include "breaklines.h"
 #include "contour_compare.h"
 #include "contour_conics.h"
 #include "contour_map.h"
-#include "fitting.h"
-#include "inputs.h"
+#include "contour_surface.h"
 #include "retalho/core/error.h"
 #include "retalho/level/write_vector.h"
-#include "retalho/model/model.h"
-#include "retalho/terrain/fit.h"
-#include "retalho/tin/refine.h"
 #include "table.h"
 
 namespace retalho::app {
 namespace {
 
-const std::vector<std::string> kSurfaces{"bicubic", "linear", "powell-sabin", "clough-tocher"};
-const std::vector<std::string> kTwists{"spline", "adini", "zero"};
-const std::vector<std::string> kEnds{"not-a-knot", "natural"};
 const std::vector<std::string> kEndings{".gpkg", ".geojson", ".json", ".shp", ".dxf", ".svg", ".pdf"};
 
 struct Options {
-  std::string input, output, levels, surface, twist = "spline", ends = "not-a-knot";
+  std::string output, levels;
   double interval = 0, base = 0, tolerance = 0;
   int index_every = 5;
-  bool bands = false, ring = false, raw = false, conics = false;
+  bool bands = false, raw = false, conics = false;
   SheetFlags sheet;
   std::string compare;
   int zoom = 48;
-  GridFlags grid;
-  PointOptions points;
-  BreaklineFlags breaklines;
-  BudgetFlags budget;
+  SurfaceChoice surface;
 };
-
-/// What is traced: one of the two, and what its reader knew.
-struct Surface {
-  std::optional<BicubicGrid> bicubic;
-  std::optional<Terrain> terrain;
-  double low = 0, high = 0;  ///< of the samples; the surface may go a little beyond
-  double cell = 0;           ///< size of a cell, or of a triangle's edge; local units
-  std::string height_unit;
-  const Georef& georef() const { return bicubic ? bicubic->georef : terrain->georef; }
-};
-
-double mean_edge(const Tin& tin) {
-  double sum = 0;
-  for (const auto& t : tin.triangles) sum += norm(tin.points[t[1]] - tin.points[t[0]]);
-  return tin.triangles.empty() ? 1 : sum / static_cast<double>(tin.triangles.size());
-}
-
-void measure(Surface& surface) {
-  const Terrain& terrain = *surface.terrain;
-  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
-  surface.low = *low;
-  surface.high = *high;
-  surface.cell =
-      terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height) : mean_edge(terrain.tin);
-}
-
-Surface load_surface(const Program& program, const Options& options, const Context& context) {
-  Surface surface;
-  const bool model = is_model_file(options.input);
-  const bool points = !model && takes_points(options.input, options.points);
-  const std::string kind = !options.surface.empty() ? options.surface : points ? "clough-tocher" : "bicubic";
-  const std::size_t chosen = choose("--surface", kind, kSurfaces);
-  if (model) {
-    if (!options.surface.empty())
-      throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
-    surface.terrain = load_terrain(options.input);
-    check_terrain_need("contouring", *surface.terrain, kVertexLoaded, 0, options.input);
-    measure(surface);
-    return surface;
-  }
-  if (points) {
-    if (chosen == 0) throw UsageError("--surface bicubic needs a grid: points take the other three", {}, "--surface");
-    const PointCloud cloud = load_points(program, options.input, options.points, context);
-    SurfaceFlags flags;
-    flags.surface = kind;
-    ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
-    SurfaceOptions how = resolve(flags, true);
-    how.creases = std::move(made.edges);
-    surface.terrain = make_terrain(std::move(made.tin), cloud.georef, how, context);
-    measure(surface);
-    return surface;
-  }
-  RasterSummary summary;
-  const Need need{"contouring", chosen == 0 ? kCellContoured : 0, 0};
-  const Raster raster = load_grid(program, options.input, options.grid, summary, context, need);
-  if (chosen == 0) {
-    if (options.budget.given())
-      throw UsageError("--surface bicubic takes every cell: --max-error, --vertices and --ratio are for the others", {},
-                       "--surface");
-    surface.bicubic = make_bicubic(raster,
-                                   {.ends = static_cast<TangentEnds>(choose("--ends", options.ends, kEnds)),
-                                    .twist = *parse_twist(kTwists[choose("--twist", options.twist, kTwists)]),
-                                    .keep_flats = !options.ring},
-                                   context);
-    surface.low = summary.minimum;
-    surface.high = summary.maximum;
-    surface.cell = std::min(raster.cell_width, raster.cell_height);
-    surface.height_unit = raster.height_unit;
-    return surface;
-  }
-  const Budget budget = resolve(program, options.budget, summary.valid, summary.maximum - summary.minimum);
-  SurfaceFlags flags;
-  flags.surface = kind;
-  surface.terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster,
-                                 resolve(flags, false), context);
-  measure(surface);
-  return surface;
-}
 
 std::vector<double> parse_levels(const std::string& text) {
   std::vector<double> levels;
@@ -137,7 +48,7 @@ std::vector<double> parse_levels(const std::string& text) {
 }
 
 /// A smooth surface may rise above its highest sample: levels go on a little beyond both ends.
-std::vector<double> levels_of(const Options& options, const Surface& surface) {
+std::vector<double> levels_of(const Options& options, const TracedSurface& surface) {
   if (!options.levels.empty()) return parse_levels(options.levels);
   const double beyond = 0.25 * (surface.high - surface.low);
   return contour_levels(surface.low - beyond, surface.high + beyond, options.interval, options.base);
@@ -150,7 +61,7 @@ std::vector<std::string> compare(const Program& program, const Options& options,
   comparison.zoom = options.zoom;
   const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
   const auto prepare = [&](double low, double high, double cell) {
-    Surface range;
+    TracedSurface range;
     range.low = low;
     range.high = high;
     comparison.levels = levels_of(options, range);
@@ -158,24 +69,24 @@ std::vector<std::string> compare(const Program& program, const Options& options,
       comparison.index.push_back(is_index_level(comparison.levels, static_cast<int>(k), file));
     comparison.tolerance = options.tolerance > 0 ? options.tolerance : 0.02 * cell;
   };
-  if (is_model_file(options.input))
+  if (is_model_file(options.surface.input))
     throw UsageError("a model has its surface already: --compare-surfaces is for grids and points", {},
                      "--compare-surfaces");
-  if (takes_points(options.input, options.points)) {
-    const PointCloud cloud = load_points(program, options.input, options.points, context);
-    const ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
+  if (takes_points(options.surface.input, options.surface.points)) {
+    const PointCloud cloud = load_points(program, options.surface.input, options.surface.points, context);
+    const ConstrainedTin made = triangulate(program, cloud, options.surface.input, options.surface.breaklines, nullptr, context);
     const auto [low, high] = std::minmax_element(made.tin.heights.begin(), made.tin.heights.end());
     prepare(*low, *high, mean_edge(made.tin));
     return compare_point_surfaces(program, made, cloud.georef, comparison, context);
   }
   RasterSummary summary;
-  const Raster raster = load_grid(program, options.input, options.grid, summary, context);
+  const Raster raster = load_grid(program, options.surface.input, options.surface.grid, summary, context);
   const Raster part = middle_of(raster, options.zoom);
   if (part.cells() < raster.cells())
     program.say(fmt::format("the picture shows the middle {} x {} cells of {} x {}: --zoom N shows N, --zoom 0 all",
                             part.columns, part.rows, raster.columns, raster.rows));
   const RasterSummary shown = summarize(part);
-  if (shown.valid == 0) throw BadInput("the part that is shown has no data: choose --zoom 0", options.input);
+  if (shown.valid == 0) throw BadInput("the part that is shown has no data: choose --zoom 0", options.surface.input);
   prepare(shown.minimum, shown.maximum, std::min(part.cell_width, part.cell_height));
   return compare_grid_surfaces(program, part, comparison, context);
 }
@@ -189,6 +100,19 @@ nlohmann::ordered_json singular_json(const ContourSet& set, const Georef& georef
   }
   return list;
 }
+
+/// What was traced.
+struct Tally {
+  std::size_t lines = 0, closed = 0, vertices = 0;
+
+  void add(const ContourSet& set) {
+    lines += set.lines.size();
+    for (const ContourLine& line : set.lines) {
+      closed += line.closed ? 1 : 0;
+      vertices += line.end - line.begin;
+    }
+  }
+};
 
 void check_conics(const Options& options) {
   if (!options.conics) return;
@@ -205,14 +129,14 @@ void run(const Program& program, const Options& options) {
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
   if (options.output.empty() && options.compare.empty())
     throw UsageError("name an output: -o FILE for lines, --compare-surfaces FILE for a picture", {}, "--output");
-  check_breakline_flags(options.breaklines,
-                        !is_model_file(options.input) && takes_points(options.input, options.points));
+  check_breakline_flags(options.surface.breaklines,
+                        !is_model_file(options.surface.input) && takes_points(options.surface.input, options.surface.points));
   if (!options.output.empty()) {
-    check_output(program, options.output, kEndings, {options.input});
+    check_output(program, options.output, kEndings, {options.surface.input});
     check_sheet_flags(options.sheet, options.output);
   }
   if (!options.compare.empty())
-    check_output(program, options.compare, {".png", ".svg", ".pdf"}, {options.input, options.output});
+    check_output(program, options.compare, {".png", ".svg", ".pdf"}, {options.surface.input, options.output});
   const Context context = program.context();
   if (!options.compare.empty()) {
     const std::vector<std::string> names = compare(program, options, context);
@@ -222,7 +146,7 @@ void run(const Program& program, const Options& options) {
                                       {"seconds", fmt::format("{:.2f}", watch.seconds())}}));
     }
   }
-  Surface surface = load_surface(program, options, context);
+  TracedSurface surface = load_surface(program, options.surface, context);
   if (options.conics) {
     if (!surface.terrain)
       throw UsageError("--conics is for Powell-Sabin surfaces: --surface powell-sabin, or such a model", {},
@@ -260,25 +184,38 @@ void run(const Program& program, const Options& options) {
                     : trace_contours(*surface.terrain, levels, thinned, context, &extras);
     extras.want_bands = false;
   }
-  const ContourSet set = surface.bicubic
-                             ? trace_contours(std::move(*surface.bicubic), levels, contour, context, &extras)
-                             : trace_contours(*surface.terrain, levels, contour, context, &extras);
-  context.check();
   const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
-  if (sheet) {
-    map.content.lines = &set;
-    map.content.bands = options.bands ? &extras.bands : nullptr;
-    map.content.georef = georef;
-    map.tolerance = tolerance;
-    write_map_sheet(program, map, options.sheet, options.output, file, context);
-  } else if (options.bands)
-    write_bands(extras.bands, georef, options.output, file, context);
-  else
-    write_contours(set, georef, options.output, file, context);
+  Tally tally;
+  ContourSet set;
+  if (surface.bicubic && !sheet && !options.bands) {
+    write_contours(georef, options.output, file, context, [&](const TakeContours& take) {
+      set = stream_contours(
+          std::move(*surface.bicubic), levels, contour,
+          [&](const ContourSet& part) {
+            tally.add(part);
+            take(part);
+          },
+          context, &extras.stats);
+    });
+  } else {
+    set = surface.bicubic ? trace_contours(std::move(*surface.bicubic), levels, contour, context, &extras)
+                          : trace_contours(*surface.terrain, levels, contour, context, &extras);
+    context.check();
+    tally.add(set);
+    if (sheet) {
+      map.content.lines = &set;
+      map.content.bands = options.bands ? &extras.bands : nullptr;
+      map.content.georef = georef;
+      map.tolerance = tolerance;
+      write_map_sheet(program, map, options.sheet, options.output, file, context);
+    } else if (options.bands) {
+      write_bands(extras.bands, georef, options.output, file, context);
+    } else {
+      write_contours(set, georef, options.output, file, context);
+    }
+  }
 
-  std::size_t closed = 0;
-  for (const ContourLine& line : set.lines) closed += line.closed ? 1 : 0;
-  if (set.lines.empty())
+  if (tally.lines == 0)
     program.say(fmt::format("no level lies between {:.6g} and {:.6g}: {}", surface.low, surface.high,
                             sheet           ? "the sheet has a frame alone"
                             : options.bands ? "one band"
@@ -288,8 +225,8 @@ void run(const Program& program, const Options& options) {
         fmt::format("{} places are singular (a saddle or a flat exactly on a level): the lines are joined there "
                     "by rule; --json lists them",
                     set.singular.size()));
-  nlohmann::ordered_json json = {{"levels", set.levels.size()}, {"lines", set.lines.size()},
-                                 {"closed_lines", closed},      {"vertices", set.points.size()},
+  nlohmann::ordered_json json = {{"levels", set.levels.size()}, {"lines", tally.lines},
+                                 {"closed_lines", tally.closed}, {"vertices", tally.vertices},
                                  {"tolerance", tolerance},      {"height_quantum", set.height_quantum}};
   if (options.bands) json["polygons"] = extras.bands.polygons.size();
   if (sheet) json["sheet"] = sheet_json(map.report, options.sheet.curves);
@@ -298,8 +235,8 @@ void run(const Program& program, const Options& options) {
   if (program.json) return program.print(json);
   std::vector<std::pair<std::string, std::string>> lines{
       {"levels", fmt::format("{}", set.levels.size())},
-      {"lines", fmt::format("{} ({} closed)", set.lines.size(), closed)},
-      {"vertices", fmt::format("{} (traced {})", set.points.size(), extras.stats.raw_points)},
+      {"lines", fmt::format("{} ({} closed)", tally.lines, tally.closed)},
+      {"vertices", fmt::format("{} (traced {})", tally.vertices, extras.stats.raw_points)},
       {"tolerance", fmt::format("{:.6g}", tolerance)},
       {"singular places", fmt::format("{}", set.singular.size())},
       {"seconds", fmt::format("{:.2f}", watch.seconds())}};
@@ -323,7 +260,7 @@ void add_contour(CLI::App& root, Program& program) {
                   "retalho contour survey.csv -o exact.json --interval 5 --surface powell-sabin --conics\n"
                   "retalho contour dem.tif -o map.pdf --interval 20 --bands --curves --title 'Jacksboro' --sheet A3\n"
                   "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
-  command->add_option("INPUT", options->input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
+  command->add_option("INPUT", options->surface.input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
       ->required()
       ->type_name("");
   command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf; .svg or .pdf: a map sheet")
@@ -342,13 +279,13 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("T")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--surface", options->surface,
+      ->add_option("--surface", options->surface.kind,
                    "bicubic (default for grids), linear, powell-sabin or clough-tocher (default for points)")
       ->type_name("KIND");
-  command->add_option("--twist", options->twist, "Bicubic: spline (default), adini, or zero as in the paper")
+  command->add_option("--twist", options->surface.twist, "Bicubic: spline (default), adini, or zero as in the paper")
       ->type_name("KIND");
-  command->add_option("--ends", options->ends, "Bicubic: not-a-knot (default) or natural")->type_name("KIND");
-  command->add_flag("--ring", options->ring, "Bicubic: splines all through, although they ring beside flats and lakes");
+  command->add_option("--ends", options->surface.ends, "Bicubic: not-a-knot (default) or natural")->type_name("KIND");
+  command->add_flag("--ring", options->surface.ring, "Bicubic: splines all through, although they ring beside flats and lakes");
   command->add_flag("--bands", options->bands,
                     "Polygons between the levels instead of lines; on a map sheet, tints beneath them");
   command->add_flag("--raw", options->raw, "Keep every traced vertex");
@@ -359,11 +296,11 @@ void add_contour(CLI::App& root, Program& program) {
                    "Every so many levels is an index contour (default 5; 0: none)")
       ->check(CLI::Range(0, 1000));
   command
-      ->add_option("--height-field", options->points.height_field, "Vector layers: the attribute that holds the height")
+      ->add_option("--height-field", options->surface.points.height_field, "Vector layers: the attribute that holds the height")
       ->type_name("NAME");
-  command->add_option("--layer", options->points.layer, "Vector files with several layers: which one")
+  command->add_option("--layer", options->surface.points.layer, "Vector files with several layers: which one")
       ->type_name("NAME");
-  add_breakline_flags(*command, options->breaklines);
+  add_breakline_flags(*command, options->surface.breaklines);
   command
       ->add_option("--compare-surfaces", options->compare,
                    "A picture (.png .svg .pdf) of the lines of every surface, side by side, each through all samples")
@@ -371,8 +308,8 @@ void add_contour(CLI::App& root, Program& program) {
   command->add_option("--zoom", options->zoom, "Of --compare-surfaces: cells a side, of the grid's middle (48; 0: all)")
       ->check(CLI::Range(0, 65535));
   add_sheet_flags(*command, options->sheet);
-  add_budget_flags(*command, options->budget);
-  add_grid_flags(*command, options->grid);
+  add_budget_flags(*command, options->surface.budget);
+  add_grid_flags(*command, options->surface.grid);
   command->callback([&program, options] { run(program, *options); });
 }
 

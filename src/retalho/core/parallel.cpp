@@ -9,11 +9,10 @@
 #include <memory>
 #include <mutex>
 
-namespace retalho {
-namespace {
+#include "retalho/core/arena.h"
 
-/// The arena of that many threads, made once: making one a call costs milliseconds and memory. oneTBB also has to be
-/// told that more threads than cores are wanted, or it says so on standard error and runs fewer.
+namespace retalho {
+
 tbb::task_arena& arena_of(int threads) {
   struct Pool {
     std::mutex mutex;
@@ -32,8 +31,6 @@ tbb::task_arena& arena_of(int threads) {
   if (!arena) arena = std::make_unique<tbb::task_arena>(threads);
   return *arena;
 }
-
-}  // namespace
 
 int thread_count(const Context& context) {
   return context.threads > 0 ? context.threads : std::max(1, tbb::this_task_arena::max_concurrency());

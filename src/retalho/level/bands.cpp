@@ -164,18 +164,18 @@ class BandBuilder {
   std::unordered_map<std::uint32_t, std::size_t> starts_, stops_;
 };
 
-/// Brings the roots of all levels into the order of the walk.
-void sort_along(DirectedBorder& piece, const Trace& trace) {
-  std::stable_sort(piece.roots.begin(), piece.roots.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return dot(trace.points[a] - piece.place, piece.along) < dot(trace.points[b] - piece.place, piece.along);
+/// Adds the roots of all levels in the order of the walk.
+void add_roots(DirectedBorder& piece, std::vector<BorderRoot>& roots) {
+  std::stable_sort(roots.begin(), roots.end(), [&](const BorderRoot& a, const BorderRoot& b) {
+    return dot(a.place - piece.place, piece.along) < dot(b.place - piece.place, piece.along);
   });
+  for (const BorderRoot& root : roots) piece.roots.push_back(root.point);
 }
 
 }  // namespace
 
-std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels& levels, std::vector<BorderEdge> edges,
-                                        const Trace& trace) {
-  std::unordered_map<std::uint64_t, std::vector<EdgeRoot>> roots;
+std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels& levels, std::vector<BorderEdge> edges) {
+  std::unordered_map<std::uint64_t, std::vector<BorderRoot>> roots;
   const auto key = [&](int column, int row, bool horizontal) {
     return 2 * static_cast<std::uint64_t>(grid.node(column, row)) + (horizontal ? 1 : 0);
   };
@@ -191,10 +191,8 @@ std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels
         {(forward ? c1 - c : column - c) * grid.cell_width, (forward ? r - r1 : r - row) * grid.cell_height},
         levels.at_most(2.0 * grid.z[grid.node(c, r)]),
         {}};
-    if (const auto found = roots.find(key(column, row, horizontal)); found != roots.end()) {
-      for (const EdgeRoot& root : found->second) piece.roots.push_back(root.point);
-      sort_along(piece, trace);
-    }
+    if (const auto found = roots.find(key(column, row, horizontal)); found != roots.end())
+      add_roots(piece, found->second);
     border.push_back(std::move(piece));
   };
   for (int r = 0; r < grid.rows; ++r)
@@ -214,6 +212,7 @@ std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels
 std::vector<DirectedBorder> terrain_border(const Terrain& terrain, const EdgeTable& edges, double per_unit,
                                            const FixedLevels& levels, const OuterRoots& outer, const Trace& trace) {
   std::vector<DirectedBorder> border;
+  std::vector<BorderRoot> roots;
   const Tin& tin = terrain.tin;
   for (std::size_t t = 0; t < tin.triangle_count(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -226,9 +225,10 @@ std::vector<DirectedBorder> terrain_border(const Terrain& terrain, const EdgeTab
                            levels.at_most(2 * std::nearbyint(tin.heights[a] * per_unit)),
                            {}};
       const std::size_t first = static_cast<std::size_t>(outer.halves) * edges.of_triangle[t][k];
+      roots.clear();
       for (std::uint32_t i = outer.start[first]; i < outer.start[first + static_cast<std::size_t>(outer.halves)]; ++i)
-        piece.roots.push_back(outer.roots[i].point);
-      sort_along(piece, trace);
+        roots.push_back({outer.roots[i].point, trace.points[outer.roots[i].point]});
+      add_roots(piece, roots);
       border.push_back(std::move(piece));
     }
   return border;

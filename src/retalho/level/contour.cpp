@@ -2,19 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "retalho/core/error.h"
-#include "retalho/core/parallel.h"
 #include "retalho/level/bands.h"
 #include "retalho/level/clip.h"
 #include "retalho/level/fixed_grid.h"
 #include "retalho/level/fixed_levels.h"
-#include "retalho/level/lines.h"
+#include "retalho/level/raw_lines.h"
 #include "retalho/level/simplify.h"
-#include "retalho/level/trace_grid.h"
+#include "retalho/level/strip_lines.h"
 #include "retalho/level/trace_terrain.h"
 #include "retalho/level/void_border.h"
 
@@ -27,90 +24,48 @@ void check(const std::vector<double>& levels, const ContourOptions& options) {
   check_levels(levels);
 }
 
-/// Copies lines out of the trace; of equal consecutive points one stays.
-void gather(const Trace& trace, const TracedLines& traced, RawLines& raw, const Context& context) {
-  ContourSet& set = raw.set;
-  const bool cells = !trace.cell.empty();
-  set.points.resize(traced.order.size());
-  if (cells) raw.cell.resize(traced.order.size());
-  set.lines.resize(traced.lines.size());
-  raw.ends.resize(traced.lines.size());
-  // Every line has its place from the start; lines that turn out shorter leave gaps, closed below.
-  std::vector<std::size_t> place(traced.lines.size());
-  std::size_t total = 0;
-  for (std::size_t l = 0; l < traced.lines.size(); ++l) {
-    place[l] = total;
-    total += traced.lines[l].count;
-  }
-  parallel_chunks(traced.lines.size(), 256, context, [&](std::size_t from, std::size_t to) {
-    for (std::size_t l = from; l < to; ++l) {
-      const TracedLine& line = traced.lines[l];
-      const std::size_t begin = place[l];
-      std::size_t end = begin;
-      for (const std::uint32_t p : std::span(traced.order).subspan(line.first, line.count)) {
-        if (end > begin && set.points[end - 1] == trace.points[p]) continue;
-        if (cells) raw.cell[end] = trace.cell[p];
-        set.points[end++] = trace.points[p];
-      }
-      if (line.closed && end > begin + 1 && set.points[end - 1] == set.points[begin]) --end;
-      set.lines[l] = {line.level, line.closed, begin, end};
-      raw.ends[l] = {line.start, line.stop};
-    }
-  });
-  std::size_t write = 0;
-  for (ContourLine& line : set.lines) {
-    const std::size_t n = line.end - line.begin;
-    if (write != line.begin) {
-      std::copy_n(set.points.begin() + static_cast<std::ptrdiff_t>(line.begin), n,
-                  set.points.begin() + static_cast<std::ptrdiff_t>(write));
-      if (cells)
-        std::copy_n(raw.cell.begin() + static_cast<std::ptrdiff_t>(line.begin), n,
-                    raw.cell.begin() + static_cast<std::ptrdiff_t>(write));
-    }
-    line.begin = write;
-    line.end = write += n;
-  }
-  set.points.resize(write);
-  if (cells) raw.cell.resize(write);
-}
-
-void fill(ContourExtras* extras, const Trace& trace) {
-  if (extras == nullptr) return;
-  extras->stats = {trace.pairs, trace.certified, trace.boxes, trace.undecided_edges, trace.points.size(), trace.depth};
-}
-
 /// Lines that will be thinned are traced closer than they have to be.
 double raw_tolerance(const ContourOptions& options) {
   return options.simplify ? options.tolerance / 5 : options.tolerance;
 }
 
-RawLines raw_lines(const Trace& trace, std::vector<double> levels, const ContourOptions& options, double quantum,
-                   ContourExtras* extras, const Context& context) {
-  fill(extras, trace);
-  RawLines lines;
-  lines.raw = raw_tolerance(options);
-  lines.set.tolerance = options.tolerance;
-  lines.set.height_quantum = quantum;
-  lines.set.singular = trace.singular;
-  gather(trace, find_lines(trace), lines, context);
-  lines.set.levels = std::move(levels);
-  return lines;
+/// What a set of lines is said to be, before there are lines.
+ContourSet empty_set(std::vector<double> levels, const ContourOptions& options, double quantum) {
+  ContourSet set;
+  set.levels = std::move(levels);
+  set.tolerance = options.tolerance;
+  set.height_quantum = quantum;
+  return set;
+}
+
+void append(RawLines& all, const RawLines& part) {
+  for (std::size_t l = 0; l < part.set.lines.size(); ++l) {
+    ContourLine line = part.set.lines[l];
+    const auto from = part.set.points.begin() + static_cast<std::ptrdiff_t>(line.begin),
+               to = part.set.points.begin() + static_cast<std::ptrdiff_t>(line.end);
+    line.begin = all.set.points.size();
+    all.set.points.insert(all.set.points.end(), from, to);
+    line.end = all.set.points.size();
+    all.set.lines.push_back(line);
+    all.ends.push_back(part.ends[l]);
+  }
 }
 
 ContourSet trace_fixed(const FixedGrid& fixed, std::vector<double> levels, const ContourOptions& options,
                        const Context& context, ContourExtras* extras) {
   const FixedLevels fixed_levels(levels, fixed.per_unit);
-  context.report("contour", 0);
   const bool want_bands = extras != nullptr && extras->want_bands;
-  std::vector<BorderEdge> border;
-  Trace trace = trace_grid(fixed, fixed_levels, raw_tolerance(options), want_bands ? &border : nullptr, context);
-  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / fixed.per_unit, extras, context);
-  if (!want_bands) trace = {};
-  if (options.simplify) simplify_lines(lines, fixed, fixed_levels, context);
+  RawLines all;
+  all.set = empty_set(std::move(levels), options, 1 / fixed.per_unit);
+  StripTotals totals = trace_strips(fixed, fixed_levels, options, raw_tolerance(options), want_bands, context,
+                                    [&](RawLines& part) { append(all, part); });
+  sort_lines(all);
+  all.set.singular = std::move(totals.singular);
+  if (extras != nullptr) extras->stats = totals.stats;
   if (want_bands)
-    extras->bands = build_bands(lines.set, lines.ends, grid_border(fixed, fixed_levels, std::move(border), trace));
+    extras->bands = build_bands(all.set, all.ends, grid_border(fixed, fixed_levels, std::move(totals.border)));
   context.report("contour", 1);
-  return std::move(lines.set);
+  return std::move(all.set);
 }
 
 }  // namespace
@@ -148,6 +103,25 @@ ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const 
   return trace_fixed(fixed, std::move(levels), options, context, extras);
 }
 
+ContourSet stream_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
+                           const TakeContours& take, const Context& context, ContourStats* stats) {
+  check(levels, options);
+  const FixedGrid fixed = fix_grid(grid, context);
+  grid = {};
+  const FixedLevels fixed_levels(levels, fixed.per_unit);
+  ContourSet whole = empty_set(std::move(levels), options, 1 / fixed.per_unit);
+  StripTotals totals =
+      trace_strips(fixed, fixed_levels, options, raw_tolerance(options), false, context, [&](RawLines& part) {
+        part.set.levels.swap(whole.levels);
+        part.set.height_quantum = whole.height_quantum;
+        take(part.set);
+        part.set.levels.swap(whole.levels);
+      });
+  whole.singular = std::move(totals.singular);
+  if (stats != nullptr) *stats = totals.stats;
+  return whole;
+}
+
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
                           const Context& context, ContourExtras* extras) {
   check(levels, options);
@@ -158,7 +132,14 @@ ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, co
   context.report("contour", 0);
   OuterRoots outer;
   Trace trace = trace_terrain(terrain, edges, per_unit, fixed_levels, raw_tolerance(options), outer, context);
-  RawLines lines = raw_lines(trace, std::move(levels), options, 1 / per_unit, extras, context);
+  if (extras != nullptr)
+    extras->stats = {trace.pairs,           trace.certified,     trace.boxes,
+                     trace.undecided_edges, trace.points.size(), trace.depth};
+  RawLines lines;
+  lines.raw = raw_tolerance(options);
+  lines.set = empty_set(std::move(levels), options, 1 / per_unit);
+  lines.set.singular = trace.singular;
+  gather_lines(trace, lines, context);
   if (!want_bands) trace = {};
   if (options.simplify) simplify_lines(lines, terrain, edges, per_unit, fixed_levels, context);
   std::vector<DirectedBorder> outline;

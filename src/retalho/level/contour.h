@@ -51,6 +51,13 @@ ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, c
 ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context = {}, ContourExtras* extras = nullptr);
 
+/// The same lines, given to `take` while the grid is traced, from north to south, so that they need not all be held:
+/// lines that end in the same 64 rows come at once, by level. Returns the set without its lines. Memory: the grid's (16
+/// bytes a cell and the samples), what 64 rows a thread hold, and the lines that still go on. `take` is called in the
+/// calling thread; what it throws is passed on.
+ContourSet stream_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
+                           const TakeContours& take, const Context& context = {}, ContourStats* stats = nullptr);
+
 /// The same on the surface of a terrain model, linear, Powell-Sabin or Clough-Tocher. Where the model's grid has cells
 /// without data, lines and bands end on the border of those cells.
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,

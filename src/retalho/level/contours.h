@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "retalho/core/vec.h"
@@ -31,6 +32,9 @@ struct ContourSet {
   double tolerance = 0;       ///< every point of a line is this close to the level line, and conversely; local units
   double height_quantum = 0;  ///< heights were rounded to multiples of this before tracing
 };
+
+/// Takes lines, complete, with their levels. Not kept after the call.
+using TakeContours = std::function<void(const ContourSet& lines)>;
 
 /// A ring of a band's border: it does not repeat its first point; outer rings run counter-clockwise, holes clockwise.
 struct BandRing {

@@ -172,7 +172,6 @@ void simplify(RawLines& lines, const FixedLevels& levels, const Context& context
     line.end = write;
   }
   set.points.resize(write);
-  set.points.shrink_to_fit();
 }
 
 template <SurfaceKind Kind>

@@ -5,25 +5,13 @@
 // when the chord stays within its level's tube, so that it cannot meet another level's. No search for neighbours.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include "retalho/core/context.h"
-#include "retalho/level/contours.h"
 #include "retalho/level/fixed_grid.h"
 #include "retalho/level/fixed_levels.h"
+#include "retalho/level/raw_lines.h"
 #include "retalho/terrain/terrain.h"
 
 namespace retalho {
-
-/// Lines as they were traced: every chord within `raw` of its arc.
-struct RawLines {
-  ContourSet set;
-  std::vector<std::uint32_t> cell;                 ///< the triangle of each point; empty for grids
-  std::vector<std::array<std::uint32_t, 2>> ends;  ///< of each line: its first and last point in the trace
-  double raw = 0;
-};
 
 /// Thins the vertices of `lines`; every line stays within lines.set.tolerance of its level set.
 void simplify_lines(RawLines& lines, const FixedGrid& grid, const FixedLevels& levels, const Context& context);

@@ -19,6 +19,12 @@ struct EdgeRoot {
   std::uint32_t point;
 };
 
+/// A root on the border of the valid area.
+struct BorderRoot {
+  std::uint32_t point;
+  Vec2 place;
+};
+
 /// The level line from a point to the next as a rational quadratic curve with weights 1, `weight`, 1.
 struct ConicLink {
   Vec2 control;
@@ -37,6 +43,17 @@ struct Trace {
   std::size_t pairs = 0, certified = 0, boxes = 0, undecided_edges = 0;
   int depth = 0;
 
+  /// Empties it; the memory stays.
+  void clear() {
+    points.clear();
+    next.clear();
+    level.clear();
+    cell.clear();
+    conics.clear();
+    singular.clear();
+    pairs = certified = boxes = undecided_edges = 0;
+    depth = 0;
+  }
   std::uint32_t add(Vec2 p, int of_level) {
     points.push_back(p);
     next.push_back(kNoPoint);

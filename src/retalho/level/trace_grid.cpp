@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
-#include "retalho/core/parallel.h"
 #include "retalho/level/box_tracer.h"
 #include "retalho/level/row_ranges.h"
 
 namespace retalho {
 namespace {
-
-constexpr int kStripRows = 64;
 
 /// The roots on a row of edges: those of edge c stand at [start[c], start[c + 1]).
 struct EdgeRow {
@@ -25,16 +21,9 @@ struct EdgeRow {
   }
 };
 
-struct Strip {
-  Trace trace;
-  std::vector<EdgeRoot> top, bottom;  ///< the roots on its first and its last row of edges
-  std::size_t top_undecided = 0;      ///< of the first row: the strip above reports the same stretches
-  std::vector<BorderEdge> border;
-};
-
 class StripTracer {
  public:
-  StripTracer(const FixedGrid& grid, const FixedLevels& levels, double tolerance, bool keep_border, Strip& strip,
+  StripTracer(const FixedGrid& grid, const FixedLevels& levels, double tolerance, bool keep_border, GridStrip& strip,
               const Context& context)
       : grid_(grid),
         context_(context),
@@ -49,15 +38,16 @@ class StripTracer {
 
   void run(int first, int last) {
     trace_row(first, above_);
-    strip_.top = above_.roots;
+    strip_.top = static_cast<std::uint32_t>(above_.roots.size());
     strip_.top_undecided = strip_.trace.undecided_edges;
     for (int row = first; row < last; ++row) {
+      strip_.bottom = static_cast<std::uint32_t>(strip_.trace.points.size());
       trace_row(row + 1, below_);
       trace_columns(row);
       trace_patches(row);
       std::swap(above_, below_);
     }
-    strip_.bottom = above_.roots;
+    strip_.bottom_count = static_cast<std::uint32_t>(above_.roots.size());
   }
 
  private:
@@ -114,8 +104,7 @@ class StripTracer {
       isolate(grid_.z[o + c], grid_.u[o + c], grid_.u[o + c + 1], grid_.z[o + c + 1], place(column, row),
               place(column + 1, row), edges.roots);
       if (keep_border_ && above != below && edges.roots.size() > before)
-        strip_.border.push_back(
-            {column, row, true, {edges.roots.begin() + static_cast<std::ptrdiff_t>(before), edges.roots.end()}});
+        keep_edge(column, row, true, std::span(edges.roots).subspan(before));
     }
     while (done <= n) edges.start[done++] = static_cast<std::uint32_t>(edges.roots.size());
   }
@@ -139,8 +128,7 @@ class StripTracer {
       isolate(grid_.z[o + c], grid_.v[o + c], grid_.v[o + c + n], grid_.z[o + c + n], place(column, row),
               place(column, row + 1), beside_.roots);
       if (keep_border_ && left != right && beside_.roots.size() > before)
-        strip_.border.push_back(
-            {column, row, false, {beside_.roots.begin() + static_cast<std::ptrdiff_t>(before), beside_.roots.end()}});
+        keep_edge(column, row, false, std::span(beside_.roots).subspan(before));
     }
     while (done <= n) beside_.start[done++] = static_cast<std::uint32_t>(beside_.roots.size());
   }
@@ -160,13 +148,18 @@ class StripTracer {
     }
   }
 
+  void keep_edge(int column, int row, bool horizontal, std::span<const EdgeRoot> roots) {
+    BorderEdge& edge = strip_.border.emplace_back(BorderEdge{column, row, horizontal, {}});
+    for (const EdgeRoot& r : roots) edge.roots.push_back({r.point, strip_.trace.points[r.point]});
+  }
+
   Vec2 place(int column, int row) const { return {column * grid_.cell_width, -row * grid_.cell_height}; }
 
   const FixedGrid& grid_;
   const Context& context_;
   const FixedLevels& levels_;
   bool keep_border_;
-  Strip& strip_;
+  GridStrip& strip_;
   BoxTracer<RectanglePatch> boxes_;
   EdgeRow above_, below_, beside_;
   std::vector<std::int32_t> low_, high_;
@@ -174,67 +167,18 @@ class StripTracer {
   std::vector<std::uint8_t> marked_;
 };
 
-/// Strips one behind the other. A root on the row between two strips was found by both: the second's is the first's.
-Trace join(std::vector<Strip>& strips, std::vector<BorderEdge>* border, const Context& context) {
-  Trace all;
-  std::size_t total = 0;
-  for (const Strip& s : strips) total += s.trace.points.size();
-  all.points.reserve(total);
-  all.next.reserve(total);
-  all.level.reserve(total);
-  std::vector<std::uint32_t> seam;  // of the strip before: points of its last row, in the joined numbering
-  for (std::size_t k = 0; k < strips.size(); ++k) {
-    context.check();
-    Strip& s = strips[k];
-    const std::size_t shared = k == 0 ? 0 : s.top.size();
-    // The first row is traced first, so its roots are points 0, 1, ... of the strip.
-    const auto offset = static_cast<std::uint32_t>(all.points.size() - shared);
-    const auto joined = [&](std::uint32_t p) { return p < shared ? seam[p] : p + offset; };
-    all.points.insert(all.points.end(), s.trace.points.begin() + static_cast<std::ptrdiff_t>(shared),
-                      s.trace.points.end());
-    all.level.insert(all.level.end(), s.trace.level.begin() + static_cast<std::ptrdiff_t>(shared), s.trace.level.end());
-    for (std::size_t i = 0; i < shared; ++i)
-      if (s.trace.next[i] != kNoPoint) all.next[seam[i]] = joined(s.trace.next[i]);
-    for (std::size_t i = shared; i < s.trace.next.size(); ++i)
-      all.next.push_back(s.trace.next[i] == kNoPoint ? kNoPoint : joined(s.trace.next[i]));
-    std::vector<std::uint32_t> last;
-    last.reserve(s.bottom.size());
-    for (const EdgeRoot& r : s.bottom) last.push_back(joined(r.point));
-    if (border != nullptr)
-      for (BorderEdge& e : s.border) {
-        // A seam's edges are reported by both strips.
-        if (k > 0 && e.horizontal && e.row == static_cast<int>(k) * kStripRows) continue;
-        for (EdgeRoot& r : e.roots) r.point = joined(r.point);
-        border->push_back(std::move(e));
-      }
-    const std::size_t again = k == 0 ? 0 : s.top_undecided;
-    all.singular.insert(all.singular.end(), s.trace.singular.begin() + static_cast<std::ptrdiff_t>(again),
-                        s.trace.singular.end());
-    all.pairs += s.trace.pairs;
-    all.certified += s.trace.certified;
-    all.boxes += s.trace.boxes;
-    all.undecided_edges += s.trace.undecided_edges - again;
-    all.depth = std::max(all.depth, s.trace.depth);
-    seam = std::move(last);
-    s = Strip{};
-  }
-  return all;
-}
-
 }  // namespace
 
-Trace trace_grid(const FixedGrid& grid, const FixedLevels& levels, double tolerance, std::vector<BorderEdge>* border,
-                 const Context& context) {
-  const int patch_rows = grid.rows - 1;
-  std::vector<Strip> strips(static_cast<std::size_t>((patch_rows + kStripRows - 1) / kStripRows));
-  parallel_chunks(strips.size(), 1, context, [&](std::size_t from, std::size_t to) {
-    for (std::size_t s = from; s < to; ++s) {
-      const int first = static_cast<int>(s) * kStripRows;
-      StripTracer(grid, levels, tolerance, border != nullptr, strips[s], context)
-          .run(first, std::min(patch_rows, first + kStripRows));
-    }
-  });
-  return join(strips, border, context);
+std::size_t strip_count(const FixedGrid& grid) {
+  return static_cast<std::size_t>((grid.rows - 1 + kStripRows - 1) / kStripRows);
+}
+
+void trace_strip(const FixedGrid& grid, const FixedLevels& levels, double tolerance, std::size_t index,
+                 bool keep_border, GridStrip& strip, const Context& context) {
+  strip.trace.clear();
+  strip.border.clear();
+  const int first = static_cast<int>(index) * kStripRows, last = std::min(grid.rows - 1, first + kStripRows);
+  StripTracer(grid, levels, tolerance, keep_border, strip, context).run(first, last);
 }
 
 }  // namespace retalho

@@ -1,7 +1,7 @@
-// Internal to level/: tracing a fixed-point bicubic grid, in strips of rows that are joined afterwards.
+// Internal to level/: tracing a fixed-point bicubic grid, a strip of rows at a time. level/strip_lines.h joins them.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include "retalho/core/context.h"
@@ -11,16 +11,31 @@
 
 namespace retalho {
 
+inline constexpr int kStripRows = 64;  ///< strips, and with them all points' order, depend on the grid alone
+
 /// An edge between a patch and nothing, with its roots in the order of u or v.
 struct BorderEdge {
   int column, row;
   bool horizontal;  ///< from (column, row) to (column + 1, row), else to (column, row + 1)
-  std::vector<EdgeRoot> roots;
+  std::vector<BorderRoot> roots;
 };
 
-/// One trace of the whole grid. The strips and with them the points' order depend on the grid alone.
-/// `border`: filled with the border edges that have roots, unless null.
-Trace trace_grid(const FixedGrid& grid, const FixedLevels& levels, double tolerance, std::vector<BorderEdge>* border,
-                 const Context& context);
+/// What lies on kStripRows rows of patches, both outer rows of edges included.
+struct GridStrip {
+  Trace trace;
+  /// Roots on the first row of edges: points 0, 1, ... of the trace; on the last one: as many from `bottom` on. Two
+  /// neighbours find the same roots in the same order on the row that they share.
+  std::uint32_t top = 0, bottom = 0, bottom_count = 0;
+  /// Of the first row's edges; the strip above reports the same stretches.
+  std::size_t top_undecided = 0;
+  std::vector<BorderEdge> border;  ///< those of the first row are the strip's that starts there
+};
+
+std::size_t strip_count(const FixedGrid& grid);
+
+/// Traces strip `index`. What `strip` held is gone, its memory is used again. `keep_border`: fills strip.border with
+/// the border edges that have roots.
+void trace_strip(const FixedGrid& grid, const FixedLevels& levels, double tolerance, std::size_t index,
+                 bool keep_border, GridStrip& strip, const Context& context);
 
 }  // namespace retalho

@@ -127,8 +127,12 @@ class VoidBorder {
       }
       // Two crossings at one place may have been found in either order.
       const auto due = inside ? SideItem::Kind::closes : SideItem::Kind::opens;
-      if (item->kind != due)
-        std::iter_swap(item, std::find_if(item, items.end(), [&](const SideItem& x) { return x.kind == due; }));
+      if (item->kind != due) {
+        const auto other = std::find_if(item, items.end(), [&](const SideItem& x) { return x.kind == due; });
+        // Without one the outline would enter twice: build_bands finds the gap and says so.
+        if (other == items.end()) continue;
+        std::iter_swap(item, other);
+      }
       if (inside) {
         close(item->node);
       } else {

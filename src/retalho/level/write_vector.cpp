@@ -40,6 +40,9 @@ std::string driver_of(const std::string& path) {
       path);
 }
 
+/// Thrown through what gives the features, so that it stops when one could not be written.
+struct LayerFailed {};
+
 /// A layer in the making, and the messages that tell whether it went well.
 class LayerWriter {
  public:
@@ -97,7 +100,10 @@ void make_layer(const std::string& file, const std::string& path, const std::str
                 const std::function<void(LayerWriter&)>& fill) {
   const GdalMessages messages;
   LayerWriter writer(file, driver, layer_name, type, georef);
-  if (writer.usable()) fill(writer);
+  try {
+    if (writer.usable()) fill(writer);
+  } catch (const LayerFailed&) {  // NOLINT(bugprone-empty-catch): writer.ok() says so
+  }
   writer.close();
   VSIStatBufL found;
   if (messages.failed() || !writer.usable() || !writer.ok() || VSIStatL(file.c_str(), &found) != 0)
@@ -137,6 +143,31 @@ void append(OGRLinearRing& ring, const std::vector<Vec2>& points, const Georef& 
   }
 }
 
+void add_line(LayerWriter& writer, const ContourSet& set, const ContourLine& line, bool dxf, const Georef& georef,
+              const VectorOptions& options) {
+  const double height = set.levels[static_cast<std::size_t>(line.level)];
+  const bool index = is_index_level(set.levels, line.level, options);
+  OGRLineString geometry;
+  const std::size_t n = line.end - line.begin, count = n + (line.closed ? 1 : 0);
+  geometry.setNumPoints(static_cast<int>(count), FALSE);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 p = georef.to_crs(set.points[line.begin + i % n]);
+    if (dxf)
+      geometry.setPoint(static_cast<int>(i), p.x, p.y, height);
+    else
+      geometry.setPoint(static_cast<int>(i), p.x, p.y);
+  }
+  writer.add(geometry, [&](OGRFeature& feature) {
+    if (dxf) {
+      feature.SetField("Layer", index ? "contour_index" : "contour");
+    } else {
+      feature.SetField("elev", height);
+      feature.SetField("index", index ? 1 : 0);
+      feature.SetField("closed", line.closed ? 1 : 0);
+    }
+  });
+}
+
 }  // namespace
 
 bool is_index_level(const std::vector<double>& levels, int level, const VectorOptions& options) {
@@ -148,8 +179,8 @@ bool is_index_level(const std::vector<double>& levels, int level, const VectorOp
   return std::fmod(place, options.index_every) == 0;
 }
 
-void write_contours(const ContourSet& set, const Georef& georef, const std::string& path, const VectorOptions& options,
-                    const Context& context) {
+void write_contours(const Georef& georef, const std::string& path, const VectorOptions& options, const Context& context,
+                    const std::function<void(const TakeContours&)>& trace) {
   const std::string driver = driver_of(path);
   const bool dxf = driver == "DXF";
   const std::string layer = driver == "ESRI Shapefile" ? stem_of(path) : dxf ? "entities" : "contours";
@@ -158,35 +189,19 @@ void write_contours(const ContourSet& set, const Georef& georef, const std::stri
     writer.field("index", OFTInteger);
     writer.field("closed", OFTInteger);
     std::size_t done = 0;
-    for (const ContourLine& line : set.lines) {
-      if (++done % 1024 == 0) {
-        context.check();
-        context.report("write", static_cast<double>(done) / static_cast<double>(set.lines.size()));
+    trace([&](const ContourSet& set) {
+      for (const ContourLine& line : set.lines) {
+        if (++done % 1024 == 0) context.check();
+        add_line(writer, set, line, dxf, georef, options);
+        if (!writer.ok()) throw LayerFailed();
       }
-      const double height = set.levels[static_cast<std::size_t>(line.level)];
-      const bool index = is_index_level(set.levels, line.level, options);
-      OGRLineString geometry;
-      const std::size_t n = line.end - line.begin, count = n + (line.closed ? 1 : 0);
-      geometry.setNumPoints(static_cast<int>(count), FALSE);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vec2 p = georef.to_crs(set.points[line.begin + i % n]);
-        if (dxf)
-          geometry.setPoint(static_cast<int>(i), p.x, p.y, height);
-        else
-          geometry.setPoint(static_cast<int>(i), p.x, p.y);
-      }
-      writer.add(geometry, [&](OGRFeature& feature) {
-        if (dxf) {
-          feature.SetField("Layer", index ? "contour_index" : "contour");
-        } else {
-          feature.SetField("elev", height);
-          feature.SetField("index", index ? 1 : 0);
-          feature.SetField("closed", line.closed ? 1 : 0);
-        }
-      });
-      if (!writer.ok()) return;
-    }
+    });
   });
+}
+
+void write_contours(const ContourSet& set, const Georef& georef, const std::string& path, const VectorOptions& options,
+                    const Context& context) {
+  write_contours(georef, path, options, context, [&](const TakeContours& take) { take(set); });
 }
 
 void write_bands(const BandSet& bands, const Georef& georef, const std::string& path, const VectorOptions& options,

@@ -1,6 +1,7 @@
 // Contour lines and bands as vector layers, through GDAL: GeoPackage, GeoJSON, Shapefile, DXF by the file's ending.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,11 @@ bool is_index_level(const std::vector<double>& levels, int level, const VectorOp
 /// are the parts of a Shapefile. Throws CannotWrite.
 void write_contours(const ContourSet& set, const Georef& georef, const std::string& path,
                     const VectorOptions& options = {}, const Context& context = {});
+
+/// The same of lines that come one set after the other: `trace` is called once, and calls what it is given with each.
+/// GeoPackage and Shapefile hold no more than the lines of one set; GeoJSON and DXF are put together in memory first.
+void write_contours(const Georef& georef, const std::string& path, const VectorOptions& options, const Context& context,
+                    const std::function<void(const TakeContours& take)>& trace);
 
 /// One polygon with holes a region, with the attributes band (0: below the first level), elev_min and elev_max (missing
 /// where the band is open to that side). Not as DXF.

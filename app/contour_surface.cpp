@@ -1,0 +1,88 @@
+#include "contour_surface.h"
+
+#include <algorithm>
+
+#include "needs.h"
+#include "retalho/core/error.h"
+#include "retalho/model/model.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/tin/refine.h"
+
+namespace retalho::app {
+namespace {
+
+const std::vector<std::string> kSurfaces{"bicubic", "linear", "powell-sabin", "clough-tocher"};
+const std::vector<std::string> kTwists{"spline", "adini", "zero"};
+const std::vector<std::string> kEnds{"not-a-knot", "natural"};
+
+void measure(TracedSurface& surface) {
+  const Terrain& terrain = *surface.terrain;
+  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
+  surface.low = *low;
+  surface.high = *high;
+  surface.cell =
+      terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height) : mean_edge(terrain.tin);
+}
+
+}  // namespace
+
+double mean_edge(const Tin& tin) {
+  double sum = 0;
+  for (const auto& t : tin.triangles) sum += norm(tin.points[t[1]] - tin.points[t[0]]);
+  return tin.triangles.empty() ? 1 : sum / static_cast<double>(tin.triangles.size());
+}
+
+TracedSurface load_surface(const Program& program, const SurfaceChoice& options, const Context& context) {
+  TracedSurface surface;
+  const bool model = is_model_file(options.input);
+  const bool points = !model && takes_points(options.input, options.points);
+  const std::string kind = !options.kind.empty() ? options.kind : points ? "clough-tocher" : "bicubic";
+  const std::size_t chosen = choose("--surface", kind, kSurfaces);
+  if (model) {
+    if (!options.kind.empty())
+      throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
+    surface.terrain = load_terrain(options.input);
+    check_terrain_need("contouring", *surface.terrain, kVertexLoaded, 0, options.input);
+    measure(surface);
+    return surface;
+  }
+  if (points) {
+    if (chosen == 0) throw UsageError("--surface bicubic needs a grid: points take the other three", {}, "--surface");
+    const PointCloud cloud = load_points(program, options.input, options.points, context);
+    SurfaceFlags flags;
+    flags.surface = kind;
+    ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
+    SurfaceOptions how = resolve(flags, true);
+    how.creases = std::move(made.edges);
+    surface.terrain = make_terrain(std::move(made.tin), cloud.georef, how, context);
+    measure(surface);
+    return surface;
+  }
+  RasterSummary summary;
+  const Need need{"contouring", chosen == 0 ? kCellContoured : 0, 0};
+  const Raster raster = load_grid(program, options.input, options.grid, summary, context, need);
+  if (chosen == 0) {
+    if (options.budget.given())
+      throw UsageError("--surface bicubic takes every cell: --max-error, --vertices and --ratio are for the others", {},
+                       "--surface");
+    surface.bicubic = make_bicubic(raster,
+                                   {.ends = static_cast<TangentEnds>(choose("--ends", options.ends, kEnds)),
+                                    .twist = *parse_twist(kTwists[choose("--twist", options.twist, kTwists)]),
+                                    .keep_flats = !options.ring},
+                                   context);
+    surface.low = summary.minimum;
+    surface.high = summary.maximum;
+    surface.cell = std::min(raster.cell_width, raster.cell_height);
+    surface.height_unit = raster.height_unit;
+    return surface;
+  }
+  const Budget budget = resolve(program, options.budget, summary.valid, summary.maximum - summary.minimum);
+  SurfaceFlags flags;
+  flags.surface = kind;
+  surface.terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster,
+                                 resolve(flags, false), context);
+  measure(surface);
+  return surface;
+}
+
+}  // namespace retalho::app

@@ -1,0 +1,41 @@
+// retalho contour: the surface that is traced, out of a grid, points or a model.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "breaklines.h"
+#include "fitting.h"
+#include "inputs.h"
+#include "program.h"
+#include "retalho/terrain/bicubic.h"
+#include "retalho/terrain/terrain.h"
+
+namespace retalho::app {
+
+struct SurfaceChoice {
+  std::string input, kind, twist = "spline", ends = "not-a-knot";
+  bool ring = false;
+  GridFlags grid;
+  PointOptions points;
+  BreaklineFlags breaklines;
+  BudgetFlags budget;
+};
+
+/// What is traced: one of the two, and what its reader knew.
+struct TracedSurface {
+  std::optional<BicubicGrid> bicubic;
+  std::optional<Terrain> terrain;
+  double low = 0, high = 0;  ///< of the samples; the surface may go a little beyond
+  double cell = 0;           ///< size of a cell, or of a triangle's edge; local units
+  std::string height_unit;
+  const Georef& georef() const { return bicubic ? bicubic->georef : terrain->georef; }
+};
+
+/// Reads the input and makes its surface. Throws UsageError for options that do not go together.
+TracedSurface load_surface(const Program& program, const SurfaceChoice& options, const Context& context);
+
+/// The mean length of the triangles' edges, local units.
+double mean_edge(const Tin& tin);
+
+}  // namespace retalho::app
