@@ -60,20 +60,19 @@ TracedSurface load_surface(const Program& program, const SurfaceChoice& options,
   }
   RasterSummary summary;
   const Need need{"contouring", chosen == 0 ? kCellContoured : 0, 0};
-  const Raster raster = load_grid(program, options.input, options.grid, summary, context, need);
+  Raster raster = load_grid(program, options.input, options.grid, summary, context, need);
   if (chosen == 0) {
     if (options.budget.given())
       throw UsageError("--surface bicubic takes every cell: --max-error, --vertices and --ratio are for the others", {},
                        "--surface");
-    surface.bicubic = make_bicubic(raster,
-                                   {.ends = static_cast<TangentEnds>(choose("--ends", options.ends, kEnds)),
-                                    .twist = *parse_twist(kTwists[choose("--twist", options.twist, kTwists)]),
-                                    .keep_flats = !options.ring},
-                                   context);
+    surface.bicubic = {.ends = static_cast<TangentEnds>(choose("--ends", options.ends, kEnds)),
+                       .twist = *parse_twist(kTwists[choose("--twist", options.twist, kTwists)]),
+                       .keep_flats = !options.ring};
     surface.low = summary.minimum;
     surface.high = summary.maximum;
     surface.cell = std::min(raster.cell_width, raster.cell_height);
     surface.height_unit = raster.height_unit;
+    surface.raster = std::move(raster);
     return surface;
   }
   const Budget budget = resolve(program, options.budget, summary.valid, summary.maximum - summary.minimum);

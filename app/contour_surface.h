@@ -8,6 +8,7 @@
 #include "fitting.h"
 #include "inputs.h"
 #include "program.h"
+#include "retalho/raster/raster.h"
 #include "retalho/terrain/bicubic.h"
 #include "retalho/terrain/terrain.h"
 
@@ -24,12 +25,13 @@ struct SurfaceChoice {
 
 /// What is traced: one of the two, and what its reader knew.
 struct TracedSurface {
-  std::optional<BicubicGrid> bicubic;
+  std::optional<Raster> raster;  ///< of which the bicubic surface is made
+  BicubicOptions bicubic;
   std::optional<Terrain> terrain;
   double low = 0, high = 0;  ///< of the samples; the surface may go a little beyond
   double cell = 0;           ///< size of a cell, or of a triangle's edge; local units
   std::string height_unit;
-  const Georef& georef() const { return bicubic ? bicubic->georef : terrain->georef; }
+  const Georef& georef() const { return raster ? raster->georef : terrain->georef; }
 };
 
 /// Reads the input and makes its surface. Throws UsageError for options that do not go together.

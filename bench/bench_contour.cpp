@@ -1,7 +1,7 @@
 // Contour lines: certified lines of smooth surfaces, beside gdal_contour and contourpy on the flat surface, same run.
 //   bench_contour                    the whole table
-//   bench_contour --value CASE       raw, simplified, threads, memory, clough-tocher, powell-sabin, rough, peers,
-//   thinning
+//   bench_contour --value CASE       raw, simplified, threads, memory, levels, clough-tocher, powell-sabin, rough,
+//   peers, thinning
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -106,19 +106,22 @@ double cells() {
 }
 
 struct Run {
-  double cpu_seconds, wall_seconds;
-  ContourSet set;
+  double cpu_seconds = 0, wall_seconds = 0;
+  std::size_t vertices = 0;
+  ContourSet set;  ///< without its lines
   ContourStats stats;
 };
 
-/// Spline, fixed point, tracing and lines.
+/// Spline, fixed point, tracing and lines, as `retalho contour` has them: each line is seen once.
 Run contour(const Raster& raster, double step, bool simplify, int threads, double tolerance = 0.1) {
   const double c = cpu(), w = wall();
-  ContourExtras extras;
-  const Context context{.threads = threads};
-  BicubicGrid grid = make_bicubic(raster, {}, context);
-  Run run{0, 0, trace_contours(std::move(grid), levels_of(raster, step), {tolerance, simplify}, context, &extras),
-          extras.stats};
+  Run run;
+  run.set = stream_contours(
+      raster, {}, levels_of(raster, step), {tolerance, simplify},
+      [&](const ContourSet& part) {
+        for (const ContourLine& line : part.lines) run.vertices += line.end - line.begin;
+      },
+      {.threads = threads}, &run.stats);
   run.cpu_seconds = cpu() - c;
   run.wall_seconds = wall() - w;
   return run;
@@ -210,8 +213,9 @@ std::size_t douglas_peucker(const ContourSet& set, double tolerance) {
 double thinning() {
   const Raster& raster = fractal();
   constexpr double tolerance = 0.25;
-  const Run ours = contour(raster, 100, true, 0, tolerance), raw = contour(raster, 100, false, 0, tolerance / 5);
-  return static_cast<double>(ours.set.points.size()) / static_cast<double>(douglas_peucker(raw.set, tolerance));
+  const Run ours = contour(raster, 100, true, 0, tolerance);
+  const ContourSet raw = trace_contours(raster, {}, levels_of(raster, 100), {tolerance / 5, false});
+  return static_cast<double>(ours.vertices) / static_cast<double>(douglas_peucker(raw, tolerance));
 }
 
 /// The demo's rough grid: M (cell, level) pairs a second with 5 m between levels.
@@ -228,12 +232,13 @@ double rough() {
   return static_cast<double>(pairs) / best / 1e6;
 }
 
-double memory() {
+/// Bytes a cell at the peak, the raster's own included.
+double memory(double step) {
   const Raster& raster = fractal();
   std::ofstream("/proc/self/clear_refs") << "5";
   const double before = resident_bytes();
-  const Run run = contour(raster, kStep, false, 1);
-  return (peak_bytes() - before) / cells();
+  contour(raster, step, true, 1);
+  return (peak_bytes() - before) / cells() + sizeof(float);
 }
 
 double best_of(int times, const std::function<double()>& value) {
@@ -250,7 +255,11 @@ double measure(const std::string& what) {
     return best_of(3, [] {
       return contour(fractal(), kStep, true, 1).wall_seconds / contour(fractal(), kStep, true, 2).wall_seconds;
     });
-  if (what == "memory") return memory();
+  if (what == "memory") return memory(kStep);
+  if (what == "levels") {
+    const double few = memory(4 * kStep);
+    return memory(kStep) / few;
+  }
   if (what == "clough-tocher") return triangulated(SurfaceKind::clough_tocher);
   if (what == "powell-sabin") return triangulated(SurfaceKind::powell_sabin);
   if (what == "rough") return rough();
@@ -280,7 +289,7 @@ int main(int argc, char** argv) {
   row("gdal_contour, flat", flat.at("gdal_seconds").get<double>());
   fmt::print("{} pairs, {:.1f} % certified at once, depth {}, {} boxes; vertices {} raw, {} thinned; singular {}\n",
              raw.stats.pairs, 100.0 * static_cast<double>(raw.stats.certified) / static_cast<double>(raw.stats.pairs),
-             raw.stats.depth, raw.stats.boxes, raw.set.points.size(), thin.set.points.size(), raw.set.singular.size());
-  for (const char* what : {"threads", "memory", "clough-tocher", "powell-sabin", "rough", "thinning"})
+             raw.stats.depth, raw.stats.boxes, raw.vertices, thin.vertices, raw.set.singular.size());
+  for (const char* what : {"threads", "memory", "levels", "clough-tocher", "powell-sabin", "rough", "thinning"})
     fmt::print("{:<16}{:.3f}\n", what, measure(what));
 }

@@ -74,7 +74,8 @@ std::vector<std::string> compare(const Program& program, const Options& options,
                      "--compare-surfaces");
   if (takes_points(options.surface.input, options.surface.points)) {
     const PointCloud cloud = load_points(program, options.surface.input, options.surface.points, context);
-    const ConstrainedTin made = triangulate(program, cloud, options.surface.input, options.surface.breaklines, nullptr, context);
+    const ConstrainedTin made =
+        triangulate(program, cloud, options.surface.input, options.surface.breaklines, nullptr, context);
     const auto [low, high] = std::minmax_element(made.tin.heights.begin(), made.tin.heights.end());
     prepare(*low, *high, mean_edge(made.tin));
     return compare_point_surfaces(program, made, cloud.georef, comparison, context);
@@ -129,8 +130,8 @@ void run(const Program& program, const Options& options) {
     throw UsageError("say which levels: --interval D (with --base B), or --levels a,b,c", {}, "--interval");
   if (options.output.empty() && options.compare.empty())
     throw UsageError("name an output: -o FILE for lines, --compare-surfaces FILE for a picture", {}, "--output");
-  check_breakline_flags(options.surface.breaklines,
-                        !is_model_file(options.surface.input) && takes_points(options.surface.input, options.surface.points));
+  check_breakline_flags(options.surface.breaklines, !is_model_file(options.surface.input) &&
+                                                        takes_points(options.surface.input, options.surface.points));
   if (!options.output.empty()) {
     check_output(program, options.output, kEndings, {options.surface.input});
     check_sheet_flags(options.sheet, options.output);
@@ -157,7 +158,7 @@ void run(const Program& program, const Options& options) {
   contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
   if (!(options.tolerance > 0))
     program.say(fmt::format("--tolerance {:.6g}: a tenth of {} (chosen, as none was given)", contour.tolerance,
-                            surface.bicubic || surface.terrain->grid.columns > 0 ? "a cell" : "a triangle's edge"));
+                            surface.raster || surface.terrain->grid.columns > 0 ? "a cell" : "a triangle's edge"));
   // Curves are fitted to every traced vertex, and take what tracing leaves of the tolerance.
   const double tolerance = contour.tolerance;
   contour.simplify = !options.raw && !options.sheet.curves;
@@ -167,30 +168,37 @@ void run(const Program& program, const Options& options) {
   const std::vector<double> levels = levels_of(options, surface);
   const bool sheet = is_sheet(options.output);
   MapSheet map;
+  const Georef georef = surface.georef();
+  // Lines alone leave as they are traced; sheets and bands want the whole surface.
+  const bool stream = surface.raster && !sheet && !options.bands;
+  std::optional<BicubicGrid> bicubic;
+  if (surface.raster && !stream) {
+    bicubic = make_bicubic(*surface.raster, surface.bicubic, context);
+    surface.raster.reset();
+  }
   if (sheet) {
-    map.content.extent = surface.bicubic ? extent_of(*surface.bicubic) : extent_of(*surface.terrain);
+    map.content.extent = bicubic ? extent_of(*bicubic) : extent_of(*surface.terrain);
     map.content.low = surface.low;
     map.content.high = surface.high;
     map.content.height_unit = surface.height_unit;
     const double least = spot_prominence(levels, surface.low, surface.high);
-    map.content.spots = surface.bicubic ? find_spot_heights(*surface.bicubic, least, context)
-                                        : find_spot_heights(*surface.terrain, least, context);
+    map.content.spots =
+        bicubic ? find_spot_heights(*bicubic, least, context) : find_spot_heights(*surface.terrain, least, context);
   }
-  const Georef georef = surface.georef();
   if (options.sheet.curves && options.bands) {
     // Tints need no more vertices than polylines do: bands of their own, thinned.
     ContourOptions thinned{tolerance, !options.raw};
-    surface.bicubic ? trace_contours(*surface.bicubic, levels, thinned, context, &extras)
-                    : trace_contours(*surface.terrain, levels, thinned, context, &extras);
+    bicubic ? trace_contours(*bicubic, levels, thinned, context, &extras)
+            : trace_contours(*surface.terrain, levels, thinned, context, &extras);
     extras.want_bands = false;
   }
   const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
   Tally tally;
   ContourSet set;
-  if (surface.bicubic && !sheet && !options.bands) {
+  if (stream) {
     write_contours(georef, options.output, file, context, [&](const TakeContours& take) {
       set = stream_contours(
-          std::move(*surface.bicubic), levels, contour,
+          *surface.raster, surface.bicubic, levels, contour,
           [&](const ContourSet& part) {
             tally.add(part);
             take(part);
@@ -198,8 +206,8 @@ void run(const Program& program, const Options& options) {
           context, &extras.stats);
     });
   } else {
-    set = surface.bicubic ? trace_contours(std::move(*surface.bicubic), levels, contour, context, &extras)
-                          : trace_contours(*surface.terrain, levels, contour, context, &extras);
+    set = bicubic ? trace_contours(std::move(*bicubic), levels, contour, context, &extras)
+                  : trace_contours(*surface.terrain, levels, contour, context, &extras);
     context.check();
     tally.add(set);
     if (sheet) {
@@ -225,9 +233,9 @@ void run(const Program& program, const Options& options) {
         fmt::format("{} places are singular (a saddle or a flat exactly on a level): the lines are joined there "
                     "by rule; --json lists them",
                     set.singular.size()));
-  nlohmann::ordered_json json = {{"levels", set.levels.size()}, {"lines", tally.lines},
+  nlohmann::ordered_json json = {{"levels", set.levels.size()},  {"lines", tally.lines},
                                  {"closed_lines", tally.closed}, {"vertices", tally.vertices},
-                                 {"tolerance", tolerance},      {"height_quantum", set.height_quantum}};
+                                 {"tolerance", tolerance},       {"height_quantum", set.height_quantum}};
   if (options.bands) json["polygons"] = extras.bands.polygons.size();
   if (sheet) json["sheet"] = sheet_json(map.report, options.sheet.curves);
   json["singular"] = singular_json(set, georef);
@@ -260,7 +268,8 @@ void add_contour(CLI::App& root, Program& program) {
                   "retalho contour survey.csv -o exact.json --interval 5 --surface powell-sabin --conics\n"
                   "retalho contour dem.tif -o map.pdf --interval 20 --bands --curves --title 'Jacksboro' --sheet A3\n"
                   "retalho contour soundings.csv -o depth.dxf --interval 0.5 --surface powell-sabin");
-  command->add_option("INPUT", options->surface.input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
+  command
+      ->add_option("INPUT", options->surface.input, "Elevation grid, points (.xyz .csv .ply, vector layers) or model")
       ->required()
       ->type_name("");
   command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf; .svg or .pdf: a map sheet")
@@ -285,7 +294,8 @@ void add_contour(CLI::App& root, Program& program) {
   command->add_option("--twist", options->surface.twist, "Bicubic: spline (default), adini, or zero as in the paper")
       ->type_name("KIND");
   command->add_option("--ends", options->surface.ends, "Bicubic: not-a-knot (default) or natural")->type_name("KIND");
-  command->add_flag("--ring", options->surface.ring, "Bicubic: splines all through, although they ring beside flats and lakes");
+  command->add_flag("--ring", options->surface.ring,
+                    "Bicubic: splines all through, although they ring beside flats and lakes");
   command->add_flag("--bands", options->bands,
                     "Polygons between the levels instead of lines; on a map sheet, tints beneath them");
   command->add_flag("--raw", options->raw, "Keep every traced vertex");
@@ -296,7 +306,8 @@ void add_contour(CLI::App& root, Program& program) {
                    "Every so many levels is an index contour (default 5; 0: none)")
       ->check(CLI::Range(0, 1000));
   command
-      ->add_option("--height-field", options->surface.points.height_field, "Vector layers: the attribute that holds the height")
+      ->add_option("--height-field", options->surface.points.height_field,
+                   "Vector layers: the attribute that holds the height")
       ->type_name("NAME");
   command->add_option("--layer", options->surface.points.layer, "Vector files with several layers: which one")
       ->type_name("NAME");

@@ -117,8 +117,10 @@ std::shared_ptr<Lines> trace_raster(const Raster& raster, const Asked& asked, co
                                asked.simplify};
   ContourExtras extras;
   extras.want_bands = asked.bands;
-  ContourSet set = trace_contours(make_bicubic(raster, surface, context),
-                                  levels_of(asked, summary.minimum, summary.maximum), options, context, &extras);
+  std::vector<double> levels = levels_of(asked, summary.minimum, summary.maximum);
+  ContourSet set =
+      asked.bands ? trace_contours(make_bicubic(raster, surface, context), std::move(levels), options, context, &extras)
+                  : trace_contours(raster, surface, std::move(levels), options, context);
   return finish(std::move(set), std::move(extras), raster.georef, asked);
 }
 

@@ -98,6 +98,40 @@ TEST(Contours, AnUndecidedStretchIsReportedOnceWithItsBox) {
   EXPECT_LE(flat[0].high.x - flat[0].low.x, 10 * std::ldexp(1.0, -17));
 }
 
+TEST(Contours, StreamedAndCollectedLinesAreThoseOfTheWholeSurface) {
+  test::Random random;
+  for (int round = 0; round < 12 * test::soak(); ++round) {
+    // Three strips of rows, with voids in every other round.
+    Raster raster = round % 3 == 0 ? noise(random, 9, 140) : hills(random, 24, 150);
+    if (round % 2 == 0)
+      for (int i = 0; i < 12; ++i)
+        std::get<std::vector<float>>(
+            raster.heights)[static_cast<std::size_t>(random.uniform(0, static_cast<double>(raster.cells()) - 1))] =
+            std::nanf("");
+    BicubicOptions surface;
+    surface.twist = round % 4 == 3 ? Twist::adini : round % 4 == 1 ? Twist::zero : Twist::spline;
+    const std::vector<double> levels = contour_levels(-30, 30, 1.37);
+    const ContourOptions options{.tolerance = 0.1, .simplify = round % 4 < 2};
+    const ContourSet whole = trace_contours(make_bicubic(raster, surface), levels, options);
+    const ContourSet collected = trace_contours(raster, surface, levels, options, {.threads = 3});
+    EXPECT_EQ(whole.points, collected.points);
+    ASSERT_EQ(whole.lines.size(), collected.lines.size());
+    EXPECT_EQ(whole.height_quantum, collected.height_quantum);
+    std::size_t lines = 0, points = 0;
+    const ContourSet rest = stream_contours(raster, surface, levels, options,
+                                            [&](const ContourSet& part) {
+                                              EXPECT_EQ(part.levels, levels);
+                                              lines += part.lines.size();
+                                              for (const ContourLine& line : part.lines)
+                                                points += line.end - line.begin;
+                                            },
+                                            {.threads = 2});
+    EXPECT_EQ(lines, whole.lines.size());
+    EXPECT_EQ(points, whole.points.size());
+    EXPECT_EQ(rest.singular.size(), whole.singular.size());
+  }
+}
+
 TEST(Contours, ComponentsEqualABruteForceCount) {
   test::Random random;
   for (int round = 0; round < 1000 * test::soak(); ++round) {

@@ -174,7 +174,8 @@ void add_roots(DirectedBorder& piece, std::vector<BorderRoot>& roots) {
 
 }  // namespace
 
-std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels& levels, std::vector<BorderEdge> edges) {
+std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels& levels,
+                                        std::vector<BorderEdge> edges) {
   std::unordered_map<std::uint64_t, std::vector<BorderRoot>> roots;
   const auto key = [&](int column, int row, bool horizontal) {
     return 2 * static_cast<std::uint64_t>(grid.node(column, row)) + (horizontal ? 1 : 0);

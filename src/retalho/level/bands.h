@@ -27,7 +27,8 @@ struct DirectedBorder {
   std::vector<std::uint32_t> roots;  ///< points of the trace, in the order of the walk
 };
 
-std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels& levels, std::vector<BorderEdge> edges);
+std::vector<DirectedBorder> grid_border(const FixedGrid& grid, const FixedLevels& levels,
+                                        std::vector<BorderEdge> edges);
 std::vector<DirectedBorder> terrain_border(const Terrain& terrain, const EdgeTable& edges, double per_unit,
                                            const FixedLevels& levels, const OuterRoots& outer, const Trace& trace);
 

@@ -51,16 +51,26 @@ void append(RawLines& all, const RawLines& part) {
   }
 }
 
+/// All lines of a grid at once; `trace` gives them strip by strip.
+template <class TraceStrips>
+RawLines collect(std::vector<double> levels, const ContourOptions& options, double per_unit, StripTotals& totals,
+                 const TraceStrips& trace) {
+  RawLines all;
+  all.set = empty_set(std::move(levels), options, 1 / per_unit);
+  totals = trace([&](RawLines& part) { append(all, part); });
+  sort_lines(all);
+  all.set.singular = std::move(totals.singular);
+  return all;
+}
+
 ContourSet trace_fixed(const FixedGrid& fixed, std::vector<double> levels, const ContourOptions& options,
                        const Context& context, ContourExtras* extras) {
   const FixedLevels fixed_levels(levels, fixed.per_unit);
   const bool want_bands = extras != nullptr && extras->want_bands;
-  RawLines all;
-  all.set = empty_set(std::move(levels), options, 1 / fixed.per_unit);
-  StripTotals totals = trace_strips(fixed, fixed_levels, options, raw_tolerance(options), want_bands, context,
-                                    [&](RawLines& part) { append(all, part); });
-  sort_lines(all);
-  all.set.singular = std::move(totals.singular);
+  StripTotals totals;
+  RawLines all = collect(std::move(levels), options, fixed.per_unit, totals, [&](const auto& take) {
+    return trace_strips(fixed, fixed_levels, options, raw_tolerance(options), want_bands, context, take);
+  });
   if (extras != nullptr) extras->stats = totals.stats;
   if (want_bands)
     extras->bands = build_bands(all.set, all.ends, grid_border(fixed, fixed_levels, std::move(totals.border)));
@@ -103,23 +113,35 @@ ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const 
   return trace_fixed(fixed, std::move(levels), options, context, extras);
 }
 
-ContourSet stream_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
-                           const TakeContours& take, const Context& context, ContourStats* stats) {
+ContourSet stream_contours(const Raster& raster, const BicubicOptions& surface, std::vector<double> levels,
+                           const ContourOptions& options, const TakeContours& take, const Context& context,
+                           ContourStats* stats) {
   check(levels, options);
-  const FixedGrid fixed = fix_grid(grid, context);
-  grid = {};
-  const FixedLevels fixed_levels(levels, fixed.per_unit);
-  ContourSet whole = empty_set(std::move(levels), options, 1 / fixed.per_unit);
-  StripTotals totals =
-      trace_strips(fixed, fixed_levels, options, raw_tolerance(options), false, context, [&](RawLines& part) {
-        part.set.levels.swap(whole.levels);
-        part.set.height_quantum = whole.height_quantum;
-        take(part.set);
-        part.set.levels.swap(whole.levels);
-      });
+  const FixedRows rows(raster, surface, context);
+  const FixedLevels fixed_levels(levels, rows.per_unit());
+  ContourSet whole = empty_set(std::move(levels), options, 1 / rows.per_unit());
+  StripTotals totals = trace_strips(rows, fixed_levels, options, raw_tolerance(options), context, [&](RawLines& part) {
+    part.set.levels.swap(whole.levels);
+    part.set.height_quantum = whole.height_quantum;
+    take(part.set);
+    part.set.levels.swap(whole.levels);
+  });
   whole.singular = std::move(totals.singular);
   if (stats != nullptr) *stats = totals.stats;
   return whole;
+}
+
+ContourSet trace_contours(const Raster& raster, const BicubicOptions& surface, std::vector<double> levels,
+                          const ContourOptions& options, const Context& context, ContourStats* stats) {
+  check(levels, options);
+  const FixedRows rows(raster, surface, context);
+  const FixedLevels fixed_levels(levels, rows.per_unit());
+  StripTotals totals;
+  RawLines all = collect(std::move(levels), options, rows.per_unit(), totals, [&](const auto& take) {
+    return trace_strips(rows, fixed_levels, options, raw_tolerance(options), context, take);
+  });
+  if (stats != nullptr) *stats = totals.stats;
+  return std::move(all.set);
 }
 
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,

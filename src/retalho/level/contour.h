@@ -51,12 +51,18 @@ ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, c
 ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context = {}, ContourExtras* extras = nullptr);
 
-/// The same lines, given to `take` while the grid is traced, from north to south, so that they need not all be held:
-/// lines that end in the same 64 rows come at once, by level. Returns the set without its lines. Memory: the grid's (16
-/// bytes a cell and the samples), what 64 rows a thread hold, and the lines that still go on. `take` is called in the
-/// calling thread; what it throws is passed on.
-ContourSet stream_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
-                           const TakeContours& take, const Context& context = {}, ContourStats* stats = nullptr);
+/// The lines of the bicubic surface of a grid (terrain/bicubic.h), given to `take` while the surface is made and
+/// traced, from north to south: neither the surface nor the lines are ever held whole. Lines that end in the same 64
+/// rows come at once, by level; all together they are those of trace_contours. Returns the set without its lines.
+/// Memory beside the raster: about 130 rows of cells a thread at 70 bytes a cell, their lines, and the lines that still
+/// go on; whatever the number of levels but for the latter. `take` is called in the calling thread; what it throws is
+/// passed on. The surface is made twice, first to know how large its ordinates are.
+ContourSet stream_contours(const Raster& raster, const BicubicOptions& surface, std::vector<double> levels,
+                           const ContourOptions& options, const TakeContours& take, const Context& context = {},
+                           ContourStats* stats = nullptr);
+/// The same, collected: trace_contours without the memory of a whole surface.
+ContourSet trace_contours(const Raster& raster, const BicubicOptions& surface, std::vector<double> levels,
+                          const ContourOptions& options, const Context& context = {}, ContourStats* stats = nullptr);
 
 /// The same on the surface of a terrain model, linear, Powell-Sabin or Clough-Tocher. Where the model's grid has cells
 /// without data, lines and bands end on the border of those cells.

@@ -3,10 +3,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retalho/core/in_order.h"
 #include "retalho/core/parallel.h"
 #include "retalho/level/fixed_levels.h"
+#include "retalho/terrain/bicubic_rows.h"
 
 namespace retalho {
+namespace {
+
+/// The largest sum of the sizes that make an ordinate, of samples [from, to).
+double largest_ordinate(const BicubicGrid& grid, std::size_t from, std::size_t to) {
+  double m = 0;
+  for (std::size_t i = from; i < to; ++i)
+    m = std::max(m,
+                 std::abs(grid.z[i]) + (std::abs(grid.zu[i]) + std::abs(grid.zv[i])) / 3 + std::abs(grid.zuv[i]) / 9);
+  return m;
+}
+
+/// Samples [from, to) of `grid` as whole quanta, to places `out` on.
+void fix_samples(const BicubicGrid& grid, std::size_t from, std::size_t to, FixedGrid& f, std::size_t out) {
+  const auto fix = [&](const std::vector<double>& values, double scale, std::vector<std::int32_t>& fixed) {
+    for (std::size_t i = from; i < to; ++i)
+      fixed[out + i - from] = static_cast<std::int32_t>(std::nearbyint(values[i] * scale));
+  };
+  fix(grid.z, f.per_unit, f.z);
+  fix(grid.zu, f.per_unit / 3, f.u);
+  fix(grid.zv, f.per_unit / 3, f.v);
+  fix(grid.zuv, f.per_unit / 9, f.t);
+}
+
+void hold_rows(FixedGrid& f, int first, int last) {
+  f.held_first = first;
+  f.held_rows = last - first;
+  const std::size_t n = static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.held_rows);
+  for (std::vector<std::int32_t>* values : {&f.z, &f.u, &f.v, &f.t}) values->resize(n);
+}
+
+}  // namespace
 
 FixedGrid fix_grid(const BicubicGrid& grid, const Context& context) {
   FixedGrid f;
@@ -18,29 +51,54 @@ FixedGrid fix_grid(const BicubicGrid& grid, const Context& context) {
   constexpr std::size_t kGrain = std::size_t{1} << 16;
   const std::size_t n = grid.z.size();
   std::vector<double> largest((n + kGrain - 1) / kGrain, 0);
-  parallel_chunks(n, kGrain, context, [&](std::size_t from, std::size_t to) {
-    double m = 0;
-    for (std::size_t i = from; i < to; ++i)
-      m = std::max(m,
-                   std::abs(grid.z[i]) + (std::abs(grid.zu[i]) + std::abs(grid.zv[i])) / 3 + std::abs(grid.zuv[i]) / 9);
-    largest[from / kGrain] = m;
-  });
-  const double size = largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
-  f.per_unit = quanta_per_unit(size);
-  f.z.resize(n);
-  f.u.resize(n);
-  f.v.resize(n);
-  f.t.resize(n);
-  parallel_chunks(n, kGrain, context, [&](std::size_t from, std::size_t to) {
-    const auto fixed = [&](double x) { return static_cast<std::int32_t>(std::nearbyint(x)); };
-    for (std::size_t i = from; i < to; ++i) {
-      f.z[i] = fixed(grid.z[i] * f.per_unit);
-      f.u[i] = fixed(grid.zu[i] * (f.per_unit / 3));
-      f.v[i] = fixed(grid.zv[i] * (f.per_unit / 3));
-      f.t[i] = fixed(grid.zuv[i] * (f.per_unit / 9));
-    }
-  });
+  parallel_chunks(n, kGrain, context,
+                  [&](std::size_t from, std::size_t to) { largest[from / kGrain] = largest_ordinate(grid, from, to); });
+  f.per_unit = quanta_per_unit(largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end()));
+  hold_rows(f, 0, grid.rows);
+  parallel_chunks(n, kGrain, context, [&](std::size_t from, std::size_t to) { fix_samples(grid, from, to, f, from); });
   return f;
+}
+
+FixedRows::FixedRows(const Raster& raster, const BicubicOptions& options, const Context& context)
+    : raster_(raster), options_(options) {
+  check_bicubic(raster);
+  constexpr int kRows = 64;
+  const auto count = static_cast<std::size_t>((raster.rows + kRows - 1) / kRows);
+  const std::size_t slots = std::min(slot_count(context), count);
+  std::vector<BicubicGrid> windows(slots);
+  std::vector<double> of_window(slots, 0);
+  const Context alone{.threads = 1, .cancel = context.cancel};
+  double largest = 0;
+  parallel_in_order(
+      count, context,
+      [&](std::size_t i, std::size_t slot) {
+        const int first = static_cast<int>(i) * kRows, last = std::min(raster.rows, first + kRows);
+        const int above = make_bicubic_rows(raster, first, last, options_, windows[slot], alone);
+        of_window[slot] =
+            largest_ordinate(windows[slot], raster.index(0, first - above), raster.index(0, last - above));
+      },
+      [&](std::size_t i, std::size_t slot) {
+        largest = std::max(largest, of_window[slot]);
+        context.report("spline", static_cast<double>(i + 1) / static_cast<double>(count));
+      });
+  per_unit_ = quanta_per_unit(largest);
+}
+
+void FixedRows::make(int first, int last, BicubicGrid& scratch, FixedGrid& f, const Context& context) const {
+  const int above = make_bicubic_rows(raster_, first, last, options_, scratch, context);
+  f.columns = raster_.columns;
+  f.rows = raster_.rows;
+  f.cell_width = raster_.cell_width;
+  f.cell_height = raster_.cell_height;
+  f.per_unit = per_unit_;
+  hold_rows(f, first, last);
+  fix_samples(scratch, raster_.index(0, first - above), raster_.index(0, last - above), f, 0);
+  f.valid = {};
+  if (scratch.valid.empty()) return;
+  f.valid = Mask(f.columns, f.held_rows, false);
+  for (int r = first; r < last; ++r)
+    for (int c = 0; c < f.columns; ++c)
+      if (scratch.valid.get(c, r - above)) f.valid.set(c, r - first, true);
 }
 
 RectanglePatch::Net<double> FixedGrid::net(int column, int row) const {

@@ -102,7 +102,8 @@ void LineJoiner::leave(const GridStrip& strip, bool last) {
   waiting_.erase(waiting_.begin(), waiting_.begin() + strip.top);
   for (std::size_t place = 0; place < waiting_.size(); ++place) {
     const Waiting& w = waiting_[place];
-    if (w.chain != kNoPoint) (w.head ? chains_[w.chain].head : chains_[w.chain].tail) = static_cast<std::int64_t>(place);
+    if (w.chain != kNoPoint)
+      (w.head ? chains_[w.chain].head : chains_[w.chain].tail) = static_cast<std::int64_t>(place);
   }
   if (last) return;
   std::vector<std::uint32_t> seam(strip.bottom_count);
@@ -120,7 +121,9 @@ void LineJoiner::add(RawLines& lines, const GridStrip& strip, bool last) {
   const std::size_t known = total_ == 0 ? 0 : strip.top;
   offset_ = total_ - known;
   total_ += strip.trace.points.size() - known;
-  if (total_ >= kNoPoint) throw BadInput("the level lines have more than four billion traced vertices: ask for fewer levels or a larger tolerance");
+  if (total_ >= kNoPoint)
+    throw BadInput(
+        "the level lines have more than four billion traced vertices: ask for fewer levels or a larger tolerance");
   waiting_.resize(strip.top + (last ? 0 : strip.bottom_count));
 
   done_.set.points.clear();
@@ -129,8 +132,8 @@ void LineJoiner::add(RawLines& lines, const GridStrip& strip, bool last) {
   std::size_t kept = 0;
   for (std::size_t l = 0; l < lines.set.lines.size(); ++l) {
     const auto [start, stop] = lines.ends[l];
-    const bool whole = lines.set.lines[l].closed ||
-                       (place_of(start, strip, last) == kEnd && place_of(stop, strip, last) == kEnd);
+    const bool whole =
+        lines.set.lines[l].closed || (place_of(start, strip, last) == kEnd && place_of(stop, strip, last) == kEnd);
     if (!whole) {
       add_piece(lines, l, strip, last);
       continue;

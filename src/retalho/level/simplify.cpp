@@ -44,25 +44,34 @@ class GridSurface {
         const Frame frame = grid_.frame(column, row);
         if (!strip.touches(frame_corners<RectanglePatch>(frame))) continue;
         if (!grid_.has_patch(column, row)) return false;
-        if (!grows_across(slopes(column, row), frame, strip, kHalvings, 1, steepest)) return false;
+        const Seen& seen = slopes(column, row, frame);
+        if (seen.sector.across(strip))
+          steepest = std::max(steepest, seen.sector.longest);
+        else if (!grows_across(seen.slopes, frame, strip, kHalvings, 1, steepest))
+          return false;
       }
     }
     return true;
   }
 
  private:
-  /// Of the patches seen last, by a few bits of their place: a line's chords ask for the same ones again and again.
-  const PatchSlopes<RectanglePatch>& slopes(int column, int row) {
-    const std::size_t node = grid_.node(column, row);
-    Seen& seen = seen_[(static_cast<std::size_t>(row) % 16) * 16 + static_cast<std::size_t>(column) % 16];
-    if (seen.node != node) seen = {node, PatchSlopes<RectanglePatch>(grid_.net(column, row))};
-    return seen.slopes;
-  }
-
   struct Seen {
     std::size_t node = static_cast<std::size_t>(-1);
+    SlopeSector sector;
     PatchSlopes<RectanglePatch> slopes;
   };
+  /// Of the patches seen last, by a few bits of their place: a line's chords ask for the same ones again and again.
+  const Seen& slopes(int column, int row, const Frame& frame) {
+    const std::size_t node = grid_.node(column, row);
+    Seen& seen = seen_[(static_cast<std::size_t>(row) % 16) * 16 + static_cast<std::size_t>(column) % 16];
+    if (seen.node != node) {
+      seen.node = node;
+      seen.slopes = PatchSlopes<RectanglePatch>(grid_.net(column, row));
+      seen.sector = SlopeSector(seen.slopes, frame);
+    }
+    return seen;
+  }
+
   const FixedGrid& grid_;
   std::vector<Seen> seen_ = std::vector<Seen>(256);
 };

@@ -61,6 +61,52 @@ struct PatchSlopes {
   }
 };
 
+/// Between which directions a patch's gradients lie, where they lie within less than a right angle of one of them: most
+/// strips are judged by these two alone.
+struct SlopeSector {
+  Vec2 first, last;    ///< unit vectors; all gradients of the net lie between them
+  double least = 0;    ///< length of the shortest gradient over that of the longest; 0: nothing is known
+  double longest = 0;  ///< of the gradients, ordinates a local unit
+
+  SlopeSector() = default;
+  template <class Patch>
+  SlopeSector(const PatchSlopes<Patch>& slopes, const Frame& frame) {
+    std::array<Vec2, static_cast<std::size_t>(Patch::kGradients)> g{};
+    Vec2 sum;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      g[i] = frame.gradient({slopes.du[i], slopes.dv[i]});
+      sum = sum + g[i];
+    }
+    double low = 1e300, high = -1e300, shortest = 1e300, most = 0;
+    std::size_t at_low = 0, at_high = 0;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      const double ahead = dot(sum, g[i]), aside = cross(sum, g[i]);
+      if (!(ahead > 0)) return;
+      const double place = aside / ahead, size = norm2(g[i]);
+      if (place < low) {
+        low = place;
+        at_low = i;
+      }
+      if (place > high) {
+        high = place;
+        at_high = i;
+      }
+      shortest = std::min(shortest, size);
+      most = std::max(most, size);
+    }
+    if (!(shortest > 0) || !std::isfinite(most)) return;
+    first = g[at_low] / norm(g[at_low]);
+    last = g[at_high] / norm(g[at_high]);
+    least = std::sqrt(shortest / most);
+    longest = std::sqrt(most) * Patch::kDegree;
+  }
+  /// Every gradient points to the strip's left, by more than rounding can take: then the polynomial grows across it.
+  bool across(const Strip& strip) const {
+    const Vec2 left = strip.left();
+    return std::min(dot(first, left), dot(last, left)) * least > 1e-9;
+  }
+};
+
 /// Does the polynomial grow along the strip's left everywhere in the part of the patch that the strip may touch?
 /// `steepest`: raised to the largest growth, in ordinates a local unit. The patch is halved `depth` times at most.
 template <class Patch>

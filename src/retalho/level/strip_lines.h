@@ -30,5 +30,8 @@ struct StripTotals {
 /// options.simplify they are thinned to options.tolerance. The same from any number of threads.
 StripTotals trace_strips(const FixedGrid& grid, const FixedLevels& levels, const ContourOptions& options, double raw,
                          bool want_border, const Context& context, const std::function<void(RawLines& lines)>& take);
+/// The same of a surface of which no more is made than the strips in hand.
+StripTotals trace_strips(const FixedRows& rows, const FixedLevels& levels, const ContourOptions& options, double raw,
+                         const Context& context, const std::function<void(RawLines& lines)>& take);
 
 }  // namespace retalho

@@ -169,15 +169,11 @@ class StripTracer {
 
 }  // namespace
 
-std::size_t strip_count(const FixedGrid& grid) {
-  return static_cast<std::size_t>((grid.rows - 1 + kStripRows - 1) / kStripRows);
-}
-
-void trace_strip(const FixedGrid& grid, const FixedLevels& levels, double tolerance, std::size_t index,
-                 bool keep_border, GridStrip& strip, const Context& context) {
+void trace_strip(const FixedGrid& grid, const FixedLevels& levels, double tolerance, int index, bool keep_border,
+                 GridStrip& strip, const Context& context) {
   strip.trace.clear();
   strip.border.clear();
-  const int first = static_cast<int>(index) * kStripRows, last = std::min(grid.rows - 1, first + kStripRows);
+  const int first = index * kStripRows, last = std::min(grid.rows - 1, first + kStripRows);
   StripTracer(grid, levels, tolerance, keep_border, strip, context).run(first, last);
 }
 

@@ -31,11 +31,13 @@ struct GridStrip {
   std::vector<BorderEdge> border;  ///< those of the first row are the strip's that starts there
 };
 
-std::size_t strip_count(const FixedGrid& grid);
+inline std::size_t strip_count(int patch_rows) {
+  return static_cast<std::size_t>((patch_rows + kStripRows - 1) / kStripRows);
+}
 
-/// Traces strip `index`. What `strip` held is gone, its memory is used again. `keep_border`: fills strip.border with
-/// the border edges that have roots.
-void trace_strip(const FixedGrid& grid, const FixedLevels& levels, double tolerance, std::size_t index,
-                 bool keep_border, GridStrip& strip, const Context& context);
+/// Traces strip `index`, whose rows `grid` must hold, and one more to both sides where there are any. What `strip` held
+/// is gone, its memory is used again. `keep_border`: fills strip.border with the border edges that have roots.
+void trace_strip(const FixedGrid& grid, const FixedLevels& levels, double tolerance, int index, bool keep_border,
+                 GridStrip& strip, const Context& context);
 
 }  // namespace retalho

@@ -7,6 +7,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
+#include "retalho/terrain/bicubic_rows.h"
 #include "retalho/terrain/spline_tangents.h"
 
 namespace retalho {
@@ -14,6 +15,13 @@ namespace {
 
 std::size_t cell_of(const BicubicGrid& grid, int column, int row) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(column);
+}
+
+template <class Row>
+void for_rows(RowRange rows, const Context& context, const Row& row) {
+  parallel_chunks(static_cast<std::size_t>(rows.last - rows.first), 64, context, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) row(rows.first + static_cast<int>(i));
+  });
 }
 
 /// The mean, over the cells around the sample, of the twist of the cell's own Coons blend.
@@ -33,70 +41,101 @@ double adini_twist(const BicubicGrid& g, int column, int row) {
   return cells == 0 ? 0 : sum / cells;
 }
 
-void flatten_tangents(BicubicGrid& g, const Context& context) {
-  parallel_chunks(static_cast<std::size_t>(g.rows), 64, context, [&](std::size_t from, std::size_t to) {
-    for (int r = static_cast<int>(from); r < static_cast<int>(to); ++r)
-      for (int c = 0; c < g.columns; ++c) {
-        const std::size_t here = cell_of(g, c, r);
-        if (!g.has_sample(c, r)) continue;
-        const auto same = [&](int column, int row) {
-          return column >= 0 && row >= 0 && column < g.columns && row < g.rows && g.has_sample(column, row) &&
-                 g.z[cell_of(g, column, row)] == g.z[here];
-        };
-        const bool flat_u = same(c - 1, r) || same(c + 1, r), flat_v = same(c, r - 1) || same(c, r + 1);
-        if (flat_u) g.zu[here] = 0;
-        if (flat_v) g.zv[here] = 0;
-        if (flat_u || flat_v) g.zuv[here] = 0;
-      }
+void flatten_tangents(BicubicGrid& g, RowRange rows, const Context& context) {
+  for_rows(rows, context, [&](int r) {
+    for (int c = 0; c < g.columns; ++c) {
+      const std::size_t here = cell_of(g, c, r);
+      if (!g.has_sample(c, r)) continue;
+      const auto same = [&](int column, int row) {
+        return column >= 0 && row >= 0 && column < g.columns && row < g.rows && g.has_sample(column, row) &&
+               g.z[cell_of(g, column, row)] == g.z[here];
+      };
+      const bool flat_u = same(c - 1, r) || same(c + 1, r), flat_v = same(c, r - 1) || same(c, r + 1);
+      if (flat_u) g.zu[here] = 0;
+      if (flat_v) g.zv[here] = 0;
+      if (flat_u || flat_v) g.zuv[here] = 0;
+    }
   });
 }
 
-}  // namespace
-
-BicubicGrid make_bicubic(const Raster& raster, const BicubicOptions& options, const Context& context) {
-  if (raster.columns < 2 || raster.rows < 2)
-    throw BadInput(fmt::format("a bicubic surface needs at least 2 x 2 samples; this grid has {} x {}", raster.columns,
-                               raster.rows));
-  BicubicGrid g;
+/// Rows [first, last) of the raster as the grid's samples.
+void take_rows(const Raster& raster, int first, int last, BicubicGrid& g) {
   g.columns = raster.columns;
-  g.rows = raster.rows;
+  g.rows = last - first;
   g.cell_width = raster.cell_width;
   g.cell_height = raster.cell_height;
-  g.georef = raster.georef;
-  g.z.resize(raster.cells());
+  const std::size_t n = static_cast<std::size_t>(g.columns) * static_cast<std::size_t>(g.rows);
+  for (std::vector<double>* values : {&g.z, &g.zu, &g.zv, &g.zuv}) values->resize(n);
   bool voids = false;
   std::visit(
       [&](const auto& heights) {
-        for (std::size_t i = 0; i < heights.size(); ++i) {
-          const auto h = static_cast<double>(heights[i]);
+        const auto* from = heights.data() + raster.index(0, first);
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto h = static_cast<double>(from[i]);
           voids |= std::isnan(h);
           g.z[i] = std::isnan(h) ? 0 : h;
         }
       },
       raster.heights);
-  if (voids) g.valid = valid_mask(raster);
+  g.valid = {};
+  if (!voids) return;
+  g.valid = Mask(g.columns, g.rows, false);
+  for (int r = 0; r < g.rows; ++r)
+    for (int c = 0; c < g.columns; ++c)
+      if (raster.valid(c, first + r)) g.valid.set(c, r, true);
+}
 
+/// Sets the tangents and twists of `rows`. What lies beyond may hold anything afterwards.
+void set_tangents(BicubicGrid& g, RowRange rows, const BicubicOptions& options, const Context& context) {
   const GridShape shape{g.columns, g.rows};
+  // A twist asks the tangents beside it (Adini), or those along its column (spline).
+  const auto around = [&](int reach) {
+    return RowRange{std::max(0, rows.first - reach), std::min(g.rows, rows.last + reach)};
+  };
+  const RowRange beside = around(options.twist == Twist::adini ? 1 : 0);
   context.report("spline", 0);
-  g.zu.resize(g.z.size());
-  tangents_along_rows(g.z, shape, g.valid, options.ends, g.zu, context);
+  tangents_along_rows(g.z, shape, g.valid, options.ends, options.twist == Twist::spline ? around(kSplineHalo) : beside,
+                      g.zu, context);
   context.report("spline", 0.3);
-  g.zv.resize(g.z.size());
-  tangents_along_columns(g.z, shape, g.valid, options.ends, g.zv, context);
+  tangents_along_columns(g.z, shape, g.valid, options.ends, beside, g.zv, context);
   context.report("spline", 0.6);
-  g.zuv.assign(g.z.size(), 0);
   if (options.twist == Twist::spline) {
-    tangents_along_columns(g.zu, shape, g.valid, options.ends, g.zuv, context);
-  } else if (options.twist == Twist::adini) {
-    parallel_chunks(static_cast<std::size_t>(g.rows), 64, context, [&](std::size_t from, std::size_t to) {
-      for (int r = static_cast<int>(from); r < static_cast<int>(to); ++r)
-        for (int c = 0; c < g.columns; ++c)
-          if (g.has_sample(c, r)) g.zuv[cell_of(g, c, r)] = adini_twist(g, c, r);
+    tangents_along_columns(g.zu, shape, g.valid, options.ends, rows, g.zuv, context);
+  } else {
+    const bool adini = options.twist == Twist::adini;
+    for_rows(rows, context, [&](int r) {
+      for (int c = 0; c < g.columns; ++c)
+        g.zuv[cell_of(g, c, r)] = adini && g.has_sample(c, r) ? adini_twist(g, c, r) : 0;
     });
   }
-  if (options.keep_flats) flatten_tangents(g, context);
+  if (options.keep_flats) flatten_tangents(g, rows, context);
   context.report("spline", 1);
+}
+
+}  // namespace
+
+BicubicGrid make_bicubic(const Raster& raster, const BicubicOptions& options, const Context& context) {
+  check_bicubic(raster);
+  BicubicGrid g;
+  take_rows(raster, 0, raster.rows, g);
+  g.georef = raster.georef;
+  set_tangents(g, {0, g.rows}, options, context);
   return g;
+}
+
+int make_bicubic_rows(const Raster& raster, int first, int last, const BicubicOptions& options, BicubicGrid& g,
+                      const Context& context) {
+  // One row more than a tangent asks: Adini's twist asks the tangents of the rows beside.
+  const int above = std::max(0, first - kSplineHalo - 1), below = std::min(raster.rows, last + kSplineHalo + 1);
+  take_rows(raster, above, below, g);
+  set_tangents(g, {first - above, last - above}, options, context);
+  return above;
+}
+
+void check_bicubic(const Raster& raster) {
+  if (raster.columns < 2 || raster.rows < 2)
+    throw BadInput(fmt::format("a bicubic surface needs at least 2 x 2 samples; this grid has {} x {}", raster.columns,
+                               raster.rows));
 }
 
 std::array<double, 16> BicubicGrid::patch(int column, int row) const {

@@ -78,10 +78,12 @@ void for_each_run(int n, const Valid& valid, const Run& run) {
 }  // namespace
 
 void tangents_along_rows(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
-                         std::span<double> out, const Context& context) {
+                         RowRange rows, std::span<double> out, const Context& context) {
   const int columns = shape.columns;
-  parallel_chunks(static_cast<std::size_t>(shape.rows), 16, context, [&](std::size_t from, std::size_t to) {
-    for (std::size_t r = from; r < to; ++r) {
+  const auto count = static_cast<std::size_t>(rows.last - rows.first);
+  parallel_chunks(count, 16, context, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const std::size_t r = i + static_cast<std::size_t>(rows.first);
       const double* z = values.data() + r * static_cast<std::size_t>(columns);
       double* m = out.data() + r * static_cast<std::size_t>(columns);
       std::fill(m, m + columns, 0.0);
@@ -105,9 +107,10 @@ void tangents_along_rows(std::span<const double> values, GridShape shape, const 
 }
 
 void tangents_along_columns(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
-                            std::span<double> out, const Context& context) {
+                            RowRange wanted, std::span<double> out, const Context& context) {
   constexpr int kBlock = 64, kRows = 128;
   const int rows = shape.rows, columns = shape.columns;
+  const int deep_first = std::max(kSplineHalo, wanted.first), deep_last = std::min(rows - kSplineHalo, wanted.last);
   const auto stride = static_cast<std::ptrdiff_t>(columns);
   const auto blocks = static_cast<std::size_t>((columns + kBlock - 1) / kBlock);
   parallel_chunks(blocks, 1, context, [&](std::size_t from, std::size_t to) {
@@ -118,8 +121,8 @@ void tangents_along_columns(std::span<const double> values, GridShape shape, con
       double* m = out.data() + left;
       // The endless rule wherever the grid is deep enough; what is near an end or a void is done again below. Rows are
       // copied side by side first: a grid whose rows are a power of two long would use one corner of the cache only.
-      for (int top = kSplineHalo; top < rows - kSplineHalo; top += kRows) {
-        const int count = std::min(kRows, rows - kSplineHalo - top);
+      for (int top = deep_first; top < deep_last; top += kRows) {
+        const int count = std::min(kRows, deep_last - top);
         for (int r = 0; r < count + 2 * kSplineHalo; ++r) {
           const double* source = z + stride * (top - kSplineHalo + r);
           std::copy(source, source + width, copy.data() + r * kBlock);
@@ -138,17 +141,24 @@ void tangents_along_columns(std::span<const double> values, GridShape shape, con
       }
       for (int x = 0; x < width; ++x) {
         const auto is_valid = [&](int r) { return valid.empty() || valid.get(left + x, r); };
-        int done = 0;
+        int done = wanted.first;
+        const auto clear_to = [&](int row) {
+          for (row = std::min(row, wanted.last); done < row; ++done) m[stride * done + x] = 0;
+        };
         for_each_run(rows, is_valid, [&](int begin, int end) {
-          for (; done < begin; ++done) m[stride * done + x] = 0;
+          clear_to(begin);
           const int n = end - begin;
           const int inner_begin = std::min(n, kSplineHalo), inner_end = std::max(inner_begin, n - kSplineHalo);
+          const int asked = std::max(0, wanted.first - begin), stop = std::min(n, wanted.last - begin);
           const double* run = z + stride * begin + x;
-          for (int k = 0; k < inner_begin; ++k) m[stride * (begin + k) + x] = window_tangent(run, stride, n, k, ends);
-          for (int k = inner_end; k < n; ++k) m[stride * (begin + k) + x] = window_tangent(run, stride, n, k, ends);
-          done = end;
+          const auto set = [&](int k, int end_of_part) {
+            for (; k < end_of_part; ++k) m[stride * (begin + k) + x] = window_tangent(run, stride, n, k, ends);
+          };
+          set(asked, std::min(inner_begin, stop));
+          set(std::max(inner_end, asked), stop);
+          done = std::max(done, end);
         });
-        for (; done < rows; ++done) m[stride * done + x] = 0;
+        clear_to(rows);
       }
     }
   });
