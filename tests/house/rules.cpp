@@ -91,7 +91,7 @@ const std::vector<Library>& libraries() {
        {"raster", "cloud", "level", "curve", "visibility"}},
       {"Embree", std::regex("^embree[0-9]/.*"), {"visibility", "patch", "tetraquad", "render"}},
       {"FlatBuffers", std::regex("^flatbuffers/.*|.*_generated\\.h$"), {"model"}},
-      {"oneTBB", std::regex("^(tbb|oneapi)/.*"), {"core/parallel.cpp"}},
+      {"oneTBB", std::regex("^(tbb|oneapi)/.*"), {"core/arena.h", "core/in_order.cpp", "core/parallel.cpp"}},
       {"Eigen", std::regex("^Eigen/.*"), {}},
       {"SuiteSparse", std::regex("^(suitesparse/)?(cholmod|umfpack|SuiteSparseQR)[a-zA-Z_]*\\.(h|hpp)$"), {}},
       {"fmt", std::regex("^fmt/.*"), {}},

@@ -107,7 +107,7 @@ TEST(Contours, StreamedAndCollectedLinesAreThoseOfTheWholeSurface) {
       for (int i = 0; i < 12; ++i)
         std::get<std::vector<float>>(
             raster.heights)[static_cast<std::size_t>(random.uniform(0, static_cast<double>(raster.cells()) - 1))] =
-            std::nanf("");
+            std::nan("");
     BicubicOptions surface;
     surface.twist = round % 4 == 3 ? Twist::adini : round % 4 == 1 ? Twist::zero : Twist::spline;
     const std::vector<double> levels = contour_levels(-30, 30, 1.37);
