@@ -104,10 +104,12 @@ TEST(Contours, StreamedAndCollectedLinesAreThoseOfTheWholeSurface) {
     // Three strips of rows, with voids in every other round.
     Raster raster = round % 3 == 0 ? noise(random, 9, 140) : hills(random, 24, 150);
     if (round % 2 == 0)
-      for (int i = 0; i < 12; ++i)
-        std::get<std::vector<float>>(
-            raster.heights)[static_cast<std::size_t>(random.uniform(0, static_cast<double>(raster.cells()) - 1))] =
-            std::nan("");
+      std::visit(
+          [&](auto& heights) {
+            for (int i = 0; i < 12; ++i)
+              heights[static_cast<std::size_t>(random.uniform(0, static_cast<double>(heights.size() - 1)))] = NAN;
+          },
+          raster.heights);
     BicubicOptions surface;
     surface.twist = round % 4 == 3 ? Twist::adini : round % 4 == 1 ? Twist::zero : Twist::spline;
     const std::vector<double> levels = contour_levels(-30, 30, 1.37);
