@@ -4,6 +4,7 @@
 
 #include "needs.h"
 #include "retalho/core/error.h"
+#include "retalho/core/in_order.h"
 #include "retalho/model/model.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/tin/refine.h"
@@ -59,7 +60,9 @@ TracedSurface load_surface(const Program& program, const SurfaceChoice& options,
     return surface;
   }
   RasterSummary summary;
-  const Need need{"contouring", chosen == 0 ? kCellContoured : 0, 0};
+  Need need{"contouring"};
+  if (chosen == 0 && options.whole) need.a_cell = kCellContoured;
+  if (chosen == 0 && !options.whole) need.a_column = kColumnStreamed * static_cast<double>(slot_count(context));
   Raster raster = load_grid(program, options.input, options.grid, summary, context, need);
   if (chosen == 0) {
     if (options.budget.given())

@@ -17,6 +17,7 @@ namespace retalho::app {
 struct SurfaceChoice {
   std::string input, kind, twist = "spline", ends = "not-a-knot";
   bool ring = false;
+  bool whole = false;  ///< a bicubic surface will be made whole: for bands and map sheets
   GridFlags grid;
   PointOptions points;
   BreaklineFlags breaklines;

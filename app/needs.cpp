@@ -31,7 +31,8 @@ void check_grid_need(const Need& need, const std::string& file, int band) {
   } catch (const Error&) {  // of a form that says no size (ASCII PGM), or wrong, which the reader says better
     return;
   }
-  check_memory(kProcessMemory + static_cast<double>(place.cells()) * (kHeight + need.a_cell) + need.more,
+  check_memory(kProcessMemory + static_cast<double>(place.cells()) * (kHeight + need.a_cell) + need.more +
+                   need.a_column * place.columns,
                fmt::format("{} {} x {} cells", need.work, place.columns, place.rows), file);
 }
 

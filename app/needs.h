@@ -13,8 +13,9 @@ namespace retalho::app {
 /// Beside the process itself and what reading takes for each cell (4 to 12 bytes).
 struct Need {
   std::string work = "reading";
-  double a_cell = 0;  ///< bytes a cell of the input grid
-  double more = 0;    ///< bytes that do not depend on it: vertices of a budget, an output
+  double a_cell = 0;    ///< bytes a cell of the input grid
+  double more = 0;      ///< bytes that do not depend on it: vertices of a budget, an output
+  double a_column = 0;  ///< bytes a column, where a strip of rows is held at a time
 };
 
 /// Throws BadInput where a grid of this size needs more than the limit. Says nothing of a file that the reader will
@@ -30,11 +31,13 @@ void check_terrain_need(const std::string& work, const Terrain& terrain, double 
 inline constexpr double kVertexFitted = 300;  ///< fit: triangulation, surface, file in memory
 inline constexpr double kPointFitted = 750;   ///< fit of points: the same, and the triangulation of scattered points
 inline constexpr double kVertexLeastSquares = 2000;  ///< the normal equations and their factor
-inline constexpr double kCellContoured = 64;         ///< the bicubic surface; lines come on top
-inline constexpr double kVertexMeshed = 700;         ///< mesh: the coarsest mesh; finer ones are not known before
-inline constexpr double kVertexLoaded = 500;         ///< a terrain and its evaluator
-inline constexpr double kCellSampled = 28;           ///< double, float, gradient
-inline constexpr double kCellSeen = 12;              ///< counts, map, output
+inline constexpr double kCellContoured = 64;         ///< the whole bicubic surface; lines come on top
+/// contour without it: the rows of a strip and those around it, for each strip under way; lines that go on come on top.
+inline constexpr double kColumnStreamed = 130 * 70;
+inline constexpr double kVertexMeshed = 700;  ///< mesh: the coarsest mesh; finer ones are not known before
+inline constexpr double kVertexLoaded = 500;  ///< a terrain and its evaluator
+inline constexpr double kCellSampled = 28;    ///< double, float, gradient
+inline constexpr double kCellSeen = 12;       ///< counts, map, output
 inline constexpr double kCellIntervisible = 24;
 inline constexpr double kCellCompared = 40;  ///< compare --visibility
 inline constexpr double kPointFile = 6;      ///< a byte of a file of points

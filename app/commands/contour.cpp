@@ -147,7 +147,11 @@ void run(const Program& program, const Options& options) {
                                       {"seconds", fmt::format("{:.2f}", watch.seconds())}}));
     }
   }
-  TracedSurface surface = load_surface(program, options.surface, context);
+  const bool sheet = is_sheet(options.output);
+  SurfaceChoice choice = options.surface;
+  // Lines alone leave as they are traced; sheets and bands want the whole surface.
+  choice.whole = sheet || options.bands;
+  TracedSurface surface = load_surface(program, choice, context);
   if (options.conics) {
     if (!surface.terrain)
       throw UsageError("--conics is for Powell-Sabin surfaces: --surface powell-sabin, or such a model", {},
@@ -166,11 +170,9 @@ void run(const Program& program, const Options& options) {
   ContourExtras extras;
   extras.want_bands = options.bands;
   const std::vector<double> levels = levels_of(options, surface);
-  const bool sheet = is_sheet(options.output);
   MapSheet map;
   const Georef georef = surface.georef();
-  // Lines alone leave as they are traced; sheets and bands want the whole surface.
-  const bool stream = surface.raster && !sheet && !options.bands;
+  const bool stream = surface.raster && !choice.whole;
   std::optional<BicubicGrid> bicubic;
   if (surface.raster && !stream) {
     bicubic = make_bicubic(*surface.raster, surface.bicubic, context);

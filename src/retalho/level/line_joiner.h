@@ -50,9 +50,9 @@ class LineJoiner {
 
   std::vector<Chain> chains_;
   std::vector<std::uint32_t> free_;
-  std::vector<Waiting> waiting_;  ///< at the places of the strip in hand
-  std::vector<std::uint32_t> seam_,
-      next_seam_;  ///< roots of its first and of its last row, numbered through all strips
+  std::vector<Waiting> waiting_;          ///< at the places of the strip in hand
+  std::vector<std::uint32_t> seam_;       ///< roots of its first row, numbered through all strips
+  std::vector<std::uint32_t> next_seam_;  ///< and of its last one
   std::uint64_t offset_ = 0, total_ = 0;
   RawLines done_;
 };
