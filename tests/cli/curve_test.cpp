@@ -2,12 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "cli/program.h"
+#include "support/paths.h"
 
 namespace retalho::test {
 namespace {
 
 std::string example(const std::string& name) {
-  return std::string(RETALHO_SOURCE_DIR) + "/examples/curves/" + name + ".json";
+  return source_folder() + "/examples/curves/" + name + ".json";
 }
 
 TEST(CurveCommand, ReportsJoinsMeasuresAndCrossings) {

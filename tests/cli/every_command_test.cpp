@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/program.h"
+#include "support/paths.h"
 
 namespace retalho::test {
 namespace {
@@ -56,7 +57,7 @@ TEST(EveryCommand, Version) {
   const ScratchFolder folder;
   const Outcome outcome = run(folder, "--version");
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.out, "retalho " + slurp(std::string(RETALHO_SOURCE_DIR) + "/VERSION"));
+  EXPECT_EQ(outcome.out, "retalho " + slurp(source_folder() + "/VERSION"));
 }
 
 TEST(EveryCommand, StandardOutputThatCannotBeWrittenIsExit5) {

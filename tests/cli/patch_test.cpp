@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/program.h"
+#include "support/paths.h"
 
 namespace retalho::test {
 namespace {
@@ -49,7 +50,7 @@ TEST(PatchCommand, ErrorsNameThePlace) {
 
 TEST(PatchCommand, SeveralPatchesArePicturedAndTheirJoinsTold) {
   const ScratchFolder folder;
-  const std::string hull = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/hull.json";
+  const std::string hull = source_folder() + "/examples/patches/hull.json";
   const Outcome outcome =
       run(folder, "patch " + hull + " -o a.png -o a.ply --refine 2 --style zebra --size 200x150 --json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -69,7 +70,7 @@ TEST(PatchCommand, SeveralPatchesArePicturedAndTheirJoinsTold) {
 
 TEST(PatchCommand, AMeshGetsParametersAndASurface) {
   const ScratchFolder folder;
-  const std::string octant = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/octant.json";
+  const std::string octant = source_folder() + "/examples/patches/octant.json";
   ASSERT_EQ(run(folder, "patch " + octant + " -o m.ply -o m.obj --divisions 20").code, 0);
   for (const char* kind : {"shape-preserving", "mean-value"}) {
     const Outcome outcome = run(folder, std::string("patch m.ply --json --at 0.3,0.3 --parameters ") + kind);
@@ -89,7 +90,7 @@ TEST(PatchCommand, AMeshGetsParametersAndASurface) {
 
 TEST(PatchCommand, TheModelFileServesTheOtherCommands) {
   const ScratchFolder folder;
-  const std::string hull = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/hull.json";
+  const std::string hull = source_folder() + "/examples/patches/hull.json";
   ASSERT_EQ(run(folder, "patch " + hull + " -o h.retalho --divisions 8").code, 0);
   const auto info = run(folder, "info h.retalho --json").json();
   EXPECT_EQ(info.at("kind"), "patches");
@@ -101,7 +102,7 @@ TEST(PatchCommand, TheModelFileServesTheOtherCommands) {
   EXPECT_EQ(mesh.json().at("watertight"), true);
   EXPECT_LE(mesh.json().at("tolerance").get<double>(), 0.002);
   EXPECT_GT(mesh.json().at("triangles").get<int>(), 256);
-  const std::string blade = std::string(RETALHO_SOURCE_DIR) + "/examples/patches/blade.json";
+  const std::string blade = source_folder() + "/examples/patches/blade.json";
   ASSERT_EQ(run(folder, "patch " + blade + " -o b.retalho").code, 0);  // its open ends lie over each other in plan
   EXPECT_EQ(run(folder, "mesh b.retalho -o b.ply --json").json().at("watertight"), true);
   ASSERT_EQ(run(folder, "render h.retalho -o h.png --style isophotes --size 200x200").code, 0);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.h"
 #include "support/support.h"
 
 namespace retalho::test {
@@ -30,7 +31,7 @@ inline std::string slurp(const std::string& path) {
 /// `arguments` as a shell would take them, run inside `folder`; its two outputs are kept apart in files outside of it.
 inline Outcome run(const ScratchFolder& folder, const std::string& arguments, const std::string& redirect = "") {
   const ScratchFolder outputs;
-  const std::string command = fmt::format("cd '{}' && '{}' {} >'{}' 2>'{}' {}", folder.path().string(), RETALHO_PROGRAM,
+  const std::string command = fmt::format("cd '{}' && '{}' {} >'{}' 2>'{}' {}", folder.path().string(), program_path(),
                                           arguments, outputs / "out", outputs / "err", redirect);
   const int status = std::system(command.c_str());
   Outcome outcome;

@@ -12,12 +12,13 @@
 #include "retalho/core/error.h"
 #include "retalho/curve/continuity.h"
 #include "retalho/curve/convert.h"
+#include "support/paths.h"
 
 namespace retalho {
 namespace {
 
 nlohmann::json reference() {
-  std::ifstream in(std::string(RETALHO_SOURCE_DIR) + "/tests/data/spline_reference.json");
+  std::ifstream in(test::source_folder() + "/tests/data/spline_reference.json");
   return nlohmann::json::parse(in);
 }
 

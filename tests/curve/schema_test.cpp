@@ -8,6 +8,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/curve/document.h"
+#include "support/paths.h"
 #include "support/support.h"
 
 namespace retalho {
@@ -19,7 +20,7 @@ int validate(const std::string& file) {
       "import json,sys,jsonschema\n"
       "schema,value=(json.load(open(f)) for f in sys.argv[1:3])\n"
       "sys.exit(1 if list(jsonschema.Draft202012Validator(schema).iter_errors(value)) else 0)";
-  const std::string schema = std::string(RETALHO_SOURCE_DIR) + "/docs/curve.schema.json";
+  const std::string schema = test::source_folder() + "/docs/curve.schema.json";
   return WEXITSTATUS(
       std::system(fmt::format("/usr/bin/python3 -c '{}' '{}' '{}' 2>/dev/null", script, schema, file).c_str()));
 }
@@ -31,7 +32,7 @@ bool have_validator() {
 TEST(Schema, EveryExampleIsValid) {
   if (!have_validator()) GTEST_SKIP() << "python3-jsonschema is not installed";
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(RETALHO_SOURCE_DIR) + "/examples/curves")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/examples/curves")) {
     EXPECT_EQ(validate(entry.path().string()), 0) << entry.path();
     ++files;
   }

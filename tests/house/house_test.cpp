@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "house/rules.h"
+#include "support/paths.h"
 
 namespace retalho {
 namespace {
 
-const house::Path kSource = RETALHO_SOURCE_DIR;
+const house::Path kSource = test::source_folder();
 
 void expect_none(const house::Breaches& breaches) {
   EXPECT_TRUE(breaches.empty()) << fmt::format("{}", fmt::join(breaches, "\n"));

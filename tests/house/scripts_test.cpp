@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "support/paths.h"
 #include "support/support.h"
 
 namespace retalho {
@@ -17,7 +18,7 @@ struct Outcome {
 
 Outcome run_script(const std::string& arguments) {
   Outcome run;
-  std::FILE* pipe = ::popen((std::string(RETALHO_SOURCE_DIR) + "/scripts/" + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe = ::popen((test::source_folder() + "/scripts/" + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return run;
   std::string text;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);

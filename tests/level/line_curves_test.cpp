@@ -13,6 +13,7 @@
 #include "retalho/level/contour.h"
 #include "retalho/raster/io.h"
 #include "retalho/tin/refine.h"
+#include "support/paths.h"
 
 namespace retalho {
 namespace {
@@ -262,7 +263,7 @@ TEST(LineCurves, TheSameFromAnyNumberOfThreadsAndNothingFromNothing) {
 }
 
 TEST(LineCurves, JacksboroWithoutAMeeting) {
-  const Raster raster = read_raster(std::string(RETALHO_SOURCE_DIR) + "/examples/jacksboro.vrt");
+  const Raster raster = read_raster(test::source_folder() + "/examples/jacksboro.vrt");
   const BicubicGrid grid = make_bicubic(raster);
   const double tolerance = 0.1 * raster.cell_width;
   const ContourSet traced = trace_contours(grid, contour_levels(200, 1100, 100), {tolerance / 5, false});

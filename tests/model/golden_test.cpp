@@ -8,6 +8,7 @@
 
 #include "identical.h"
 #include "retalho/model/model.h"
+#include "support/paths.h"
 
 namespace retalho {
 namespace {
@@ -53,7 +54,7 @@ std::vector<Golden> golden() {
 
 TEST(GoldenModels, FilesOfFormat1AreRead) {
   for (const Golden& g : golden()) {
-    const std::string path = RETALHO_SOURCE_DIR "/tests/model/data/" + std::string(g.name) + ".retalho";
+    const std::string path = test::source_folder() + "/tests/model/data/" + std::string(g.name) + ".retalho";
     if (std::getenv("RETALHO_WRITE_GOLDEN") && !std::filesystem::exists(path)) save_model(g.terrain, path);
     ModelFileNotes notes;
     const Model model = load_model(path, &notes);

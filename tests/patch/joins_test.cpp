@@ -8,6 +8,7 @@
 #include "retalho/patch/document.h"
 #include "retalho/patch/joins.h"
 #include "retalho/patch/report.h"
+#include "support/paths.h"
 #include "support/support.h"
 
 namespace retalho::test {
@@ -15,7 +16,7 @@ namespace {
 
 std::vector<Patch> example(const std::string& name, std::array<std::size_t, 3> divisions = {16, 16, 16}) {
   std::vector<Patch> patches;
-  for (const PatchSpec& spec : read_patches(std::string(RETALHO_SOURCE_DIR) + "/examples/patches/" + name + ".json"))
+  for (const PatchSpec& spec : read_patches(source_folder() + "/examples/patches/" + name + ".json"))
     patches.push_back(make_patch(join_sides(spec.sides), {.divisions = divisions}));
   return patches;
 }

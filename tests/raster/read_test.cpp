@@ -10,6 +10,7 @@
 #include "retalho/core/error.h"
 #include "retalho/raster/io.h"
 #include "support/errors.h"
+#include "support/paths.h"
 #include "support/support.h"
 
 namespace retalho {
@@ -423,7 +424,7 @@ TEST(Jacksboro, ReadsFromTheDebianPackage) {
   const std::string archive = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
   if (!std::filesystem::exists(archive)) GTEST_SKIP() << "no " << archive << " (package python-matplotlib-data)";
   ReadNotes notes;
-  const Raster r = read_raster(std::string(RETALHO_SOURCE_DIR) + "/examples/jacksboro.vrt", {}, &notes);
+  const Raster r = read_raster(test::source_folder() + "/examples/jacksboro.vrt", {}, &notes);
   const RasterSummary s = summarize(r);
   EXPECT_EQ(r.rows, 344);
   EXPECT_EQ(r.columns, 403);

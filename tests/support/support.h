@@ -15,12 +15,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/paths.h"
+
 namespace retalho::test {
 
 /// Where the real data lies, which is no part of the repository: $RETALHO_DATA, or shared/data beside the checkout.
 inline std::filesystem::path data_folder() {
   if (const char* folder = std::getenv("RETALHO_DATA"); folder != nullptr && *folder != '\0') return folder;
-  return (std::filesystem::path(RETALHO_SOURCE_DIR) / ".." / "shared" / "data").lexically_normal();
+  return (std::filesystem::path(source_folder()) / ".." / "shared" / "data").lexically_normal();
 }
 
 /// The path of `name` under data_folder() ("dem/crater.pgm"). Where the file may be missing, ask for it with

@@ -7,13 +7,14 @@
 #include <filesystem>
 
 #include "retalho/core/error.h"
+#include "support/paths.h"
 #include "support/support.h"
 
 namespace retalho {
 namespace {
 
 std::string example(const std::string& name) {
-  return (std::filesystem::path(RETALHO_SOURCE_DIR) / "examples" / "tetraquads" / name).string();
+  return (std::filesystem::path(test::source_folder()) / "examples" / "tetraquads" / name).string();
 }
 
 TEST(Quadrics, EveryExampleIsRead) {

@@ -1,4 +1,5 @@
 // Answers in binary and inputs that are checked (viewer/calls.h), and what is embedded (viewer/page.h).
+#include "support/paths.h"
 #include "viewer/calls.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +78,7 @@ TEST(Page, IsUnderOneMegabyteCompressed) {
 }
 
 TEST(Page, LockFileHoldsNoDownloadAddress) {
-  std::ifstream in(std::string(RETALHO_SOURCE_DIR) + "/viewer/web/package-lock.json");
+  std::ifstream in(test::source_folder() + "/viewer/web/package-lock.json");
   const std::string lock{std::istreambuf_iterator<char>(in), {}};
   ASSERT_NE(lock.find("node_modules/three"), std::string::npos);
   EXPECT_NE(lock.find("\"integrity\""), std::string::npos);

@@ -213,6 +213,8 @@ async function start(): Promise<void> {
     event.preventDefault();
   });
   showStatus();
+  // The page's frame is one task, the first view with its graphics context another.
+  await new Promise((done) => setTimeout(done));
   show();
 }
 

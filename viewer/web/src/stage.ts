@@ -73,7 +73,7 @@ export abstract class Stage {
     this.dirty = false;
     const width = this.element.clientWidth, height = this.element.clientHeight;
     if (width === 0 || height === 0) return false;
-    this.renderer.setPixelRatio(ratio);
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
     this.prepare();

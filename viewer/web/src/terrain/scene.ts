@@ -19,6 +19,7 @@ export class TerrainScene {
   private panels: Panel[] = [];
   private dirty = true;
   private shown = false;
+  private drawn = false;
 
   constructor(cameraMoved: (camera: number[]) => void) {
     this.renderer = rendererOf(this.canvas, true);
@@ -32,7 +33,12 @@ export class TerrainScene {
     const moved = () => cameraMoved(this.cameraState());
     this.controls.addEventListener('end', moved);
     cameraKeys(this.canvas, this.camera, this.controls, moved);
-    new ResizeObserver(() => this.redraw()).observe(this.element);
+    // The first size is taken as soon as there is one, and the shaders are made while the program is at work: else the first
+    // picture pays for both in one task.
+    new ResizeObserver(() => {
+      if (!this.drawn) this.takeSize();
+      this.redraw();
+    }).observe(this.element);
     const frame = () => {
       requestAnimationFrame(frame);
       if (this.dirty && this.shown) this.draw();
@@ -46,6 +52,7 @@ export class TerrainScene {
     for (const panel of panels) this.scene.add(panel.group);
     this.element.replaceChildren(this.canvas, ...panels.map((panel) => panel.overlay));
     this.element.dataset.panels = String(panels.length);
+    if (!this.drawn) setTimeout(() => this.renderer.compile(this.scene, this.camera));
     this.redraw();
   }
 
@@ -115,14 +122,22 @@ export class TerrainScene {
     return {eye: this.camera.position.toArray(), forward: this.camera.getWorldDirection(new Vector3()).toArray(), angle: Math.tan((this.camera.fov * Math.PI) / 360) / height};
   }
 
-  draw(): void {
-    this.dirty = false;
-    const width = this.element.clientWidth, height = this.element.clientHeight, n = this.panels.length;
-    if (width === 0 || height === 0 || n === 0) return;
+  /** The canvas at the element's size, which is returned; [0, 0] where it has none. */
+  private takeSize(): [number, number] {
+    const width = this.element.clientWidth, height = this.element.clientHeight;
+    if (width === 0 || height === 0) return [0, 0];
     const ratio = this.software ? 1 : Math.min(2, devicePixelRatio);
-    this.renderer.setPixelRatio(ratio);
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
+    return [width, height];
+  }
+
+  draw(): void {
+    this.dirty = false;
+    const [width, height] = this.takeSize(), n = this.panels.length;
+    if (width === 0 || n === 0) return;
+    this.drawn = true;
     const background = getComputedStyle(this.element).getPropertyValue('--sky').trim() || '#e8edf2';
     this.renderer.setClearColor(background);
     this.renderer.setScissorTest(true);
