@@ -1,5 +1,5 @@
-// Where the checkout and the built program lie. Only paths.cpp is compiled with these paths: the tests' other objects are
-// the same in every checkout, so a compiler cache serves them all. Include as "support/paths.h".
+// Where the checkout and the built program lie. Only paths.cpp is compiled with these paths: the tests' other objects
+// are the same in every checkout, so a compiler cache serves them all. Include as "support/paths.h".
 #pragma once
 
 #include <string>

@@ -19,7 +19,8 @@ using test::make_grid;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Bicubic, WithSplineTwistIsScipysRectBivariateSpline) {
-  const auto reference = nlohmann::json::parse(test::bytes_of(test::source_folder() + "/tests/data/bicubic_reference.json"));
+  const auto reference =
+      nlohmann::json::parse(test::bytes_of(test::source_folder() + "/tests/data/bicubic_reference.json"));
   const auto& z = reference["z"];
   const Raster raster = make_grid<double>(static_cast<int>(z[0].size()), static_cast<int>(z.size()), [&](int c, int r) {
     return z[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)].get<double>();

@@ -1,6 +1,6 @@
 // Answers in binary and inputs that are checked (viewer/calls.h), and what is embedded (viewer/page.h).
-#include "support/paths.h"
 #include "viewer/calls.h"
+#include "support/paths.h"
 
 #include <gtest/gtest.h>
 
