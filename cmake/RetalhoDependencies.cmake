@@ -23,5 +23,3 @@ if(RETALHO_SUITESPARSE)
   endif()
 endif()
 include(RetalhoFlatbuffers)
-find_path(EMBREE_INCLUDE_DIR embree3/rtcore.h REQUIRED)          # tetraquad/rays: the tree that finds tetrahedra
-find_library(EMBREE_LIBRARY embree3 REQUIRED)

@@ -89,7 +89,6 @@ const std::vector<Library>& libraries() {
       {"GDAL",
        std::regex("^(gdal|ogr|ogrsf|cpl|vrt)[a-z_]*\\.h$"),
        {"raster", "cloud", "level", "curve", "visibility"}},
-      {"Embree", std::regex("^embree[0-9]/.*"), {"visibility", "patch", "tetraquad", "render"}},
       {"FlatBuffers", std::regex("^flatbuffers/.*|.*_generated\\.h$"), {"model"}},
       {"oneTBB", std::regex("^(tbb|oneapi)/.*"), {"core/arena.h", "core/in_order.cpp", "core/parallel.cpp"}},
       {"Eigen", std::regex("^Eigen/.*"), {}},
