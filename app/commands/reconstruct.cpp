@@ -9,10 +9,12 @@
 #include "inputs.h"
 #include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
+#include "retalho/mesh/surface_parts.h"
 #include "retalho/mesh/tetraquad_mesh.h"
 #include "retalho/tetraquad/adaptive.h"
 #include "retalho/tetraquad/document.h"
 #include "retalho/tetraquad/fit.h"
+#include "retalho/tetraquad/without.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -25,7 +27,7 @@ struct Options {
   std::string points, output, tetrahedra, split = "five", fit = "cholesky";
   std::optional<int> resolution;
   std::optional<double> max_error;
-  std::optional<std::size_t> adaptive;
+  std::optional<std::size_t> adaptive, parts, part_points;
   double quantile = 0.99, tolerance = 0, smoothness = 1;
   int neighbours = 16;
   bool closed = false;
@@ -46,6 +48,58 @@ void complete_normals(const Program& program, PointCloud& cloud, int neighbours,
                   neighbours, 100 * notes.agreement, notes.parts, notes.parts == 1 ? "" : "s",
                   notes.parts == 1 ? "its" : "their", notes.agreement < 0.98 ? ": not sure, look at the result" : ""));
   program.say("warning: " + warnings.back());
+}
+
+/// Which parts of the surface are kept. Throws UsageError when that is none.
+std::vector<char> chosen_parts(const Options& options, const SurfaceParts& found) {
+  std::vector<char> keep(found.parts.size(), 1);
+  for (std::size_t n = 0; n < keep.size(); ++n)
+    if (n >= options.parts.value_or(keep.size()) || found.parts[n].points < options.part_points.value_or(0))
+      keep[n] = 0;
+  if (!keep.empty() && keep[0] == 0)
+    throw UsageError(fmt::format("no part of the surface has {} points near it, the largest has {}: ask for fewer",
+                                 *options.part_points, found.parts[0].points),
+                     {}, "--part-points");
+  return keep;
+}
+
+/// Leaves out the parts that are not asked for, and says how many there are. The surface is changed only where it will
+/// be written (`as_model`).
+nlohmann::ordered_json choose_parts(const Program& program, const Options& options, const PointCloud& cloud,
+                                    bool as_model, TetraQuad& surface, TriangleMesh& mesh, TetraQuadFitReport& report,
+                                    const Context& context) {
+  const TetraQuadField field(surface);
+  const SurfaceParts found = find_parts(mesh, field, cloud, context);
+  std::vector<char> keep = chosen_parts(options, found);
+  const auto unwanted = std::count(keep.begin(), keep.end(), 0);
+  if (unwanted > 0 && as_model)
+    surface = without_tetrahedra(surface, tetrahedra_left_out(mesh, field, found, keep), &report);
+  const auto left_out = std::count(keep.begin(), keep.end(), 0);
+  if (left_out > 0) mesh = keep_parts(mesh, found, keep);
+  if (unwanted > 0)
+    program.say(fmt::format("{} of {} parts left out", left_out, keep.size()));
+  else if (keep.size() > 1)
+    program.say(
+        fmt::format("the surface has {} parts, {} points near the largest, {} near the smallest: --parts N keeps "
+                    "the N largest, --part-points K those with K points near them",
+                    keep.size(), found.parts.front().points, found.parts.back().points));
+  if (left_out < unwanted)
+    program.say(
+        fmt::format("{} more share tetrahedra with parts that stay, and stay in the model: as triangles (-o "
+                    "FILE.ply) they can be left out",
+                    unwanted - left_out));
+  nlohmann::ordered_json list = nlohmann::json::array();
+  for (std::size_t n = 0; n < std::min<std::size_t>(100, keep.size()); ++n) {
+    const SurfacePart& part = found.parts[n];
+    const Vec3 low = part.low + mesh.offset, high = part.high + mesh.offset;
+    list.push_back({{"points", part.points},
+                    {"triangles", part.triangles},
+                    {"area", part.area},
+                    {"low", {low.x, low.y, low.z}},
+                    {"high", {high.x, high.y, high.z}},
+                    {"kept", keep[n] != 0}});
+  }
+  return {{"parts", found.parts.size()}, {"parts_left_out", left_out}, {"part_list", std::move(list)}};
 }
 
 /// A document of quadrics at vertices: nothing to fit.
@@ -71,6 +125,7 @@ void run_document(const Program& program, const Options& options, const Context&
 }
 
 void run(const Program& program, const Options& options) {
+  if (options.parts && *options.parts == 0) throw UsageError("--parts must be 1 or more", {}, "--parts");
   const std::size_t split = choose("--split", options.split, kSplits);
   const std::size_t solver = choose("--fit", options.fit, kSolvers);
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
@@ -81,7 +136,12 @@ void run(const Program& program, const Options& options) {
   if (!options.tetrahedra.empty())
     check_output(program, options.tetrahedra, {".vtk"}, {options.points, options.output});
   const Context context = program.context();
-  if (std::filesystem::path(options.points).extension() == ".json") return run_document(program, options, context);
+  if (std::filesystem::path(options.points).extension() == ".json") {
+    if (options.parts || options.part_points)
+      throw UsageError("--parts and --part-points are for surfaces that are fitted to points", {},
+                       options.parts ? "--parts" : "--part-points");
+    return run_document(program, options, context);
+  }
   PointCloud cloud = load_points(program, options.points, {}, context);
   const Stopwatch watch;
   std::vector<std::string> warnings;
@@ -102,14 +162,15 @@ void run(const Program& program, const Options& options) {
   budget.coefficients = options.adaptive.value_or(budget.coefficients);
   budget.max_error = error.max_error;
   budget.quantile = error.quantile;
-  const TetraQuad surface = options.adaptive    ? fit_tetraquad_adaptive(cloud, budget, fit, &report, context)
-                            : options.max_error ? fit_tetraquad_to(cloud, error, fit, &report, context)
-                                                : fit_tetraquad(cloud, fit, &report, context);
+  TetraQuad surface = options.adaptive    ? fit_tetraquad_adaptive(cloud, budget, fit, &report, context)
+                      : options.max_error ? fit_tetraquad_to(cloud, error, fit, &report, context)
+                                          : fit_tetraquad(cloud, fit, &report, context);
   for (const std::string& warning : report.warnings) program.say("warning: " + warning);
   warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
-  const TetraQuadField field(surface);
   TetraQuadMeshNotes notes;
-  const TriangleMesh mesh = mesh_tetraquad(field, {.tolerance = options.tolerance}, &notes, context);
+  TriangleMesh mesh = mesh_tetraquad(TetraQuadField(surface), {.tolerance = options.tolerance}, &notes, context);
+  const bool as_model = std::filesystem::path(options.output).extension() == ".retalho";
+  const nlohmann::ordered_json parts = choose_parts(program, options, cloud, as_model, surface, mesh, report, context);
   const MeshTopology topology = topology_of(mesh);
   const double seconds = watch.seconds();
   if (options.tolerance > 0 && notes.deviation > options.tolerance)
@@ -120,7 +181,7 @@ void run(const Program& program, const Options& options) {
   if (topology.open_edges > 0)
     program.say(fmt::format("the surface is open: {} edges along {} borders", topology.open_edges, topology.borders));
   context.check();
-  if (std::filesystem::path(options.output).extension() == ".retalho")
+  if (as_model)
     save_model(surface, options.output, program.overwrite);
   else
     write_mesh(mesh, options.output, program.overwrite);
@@ -129,29 +190,30 @@ void run(const Program& program, const Options& options) {
     for (const Quadric& q : surface.quadrics) values.push_back(q[0] * surface.mesh.step);
     write_vtk(surface.mesh, values, options.tetrahedra, program.overwrite);
   }
-  const nlohmann::ordered_json json = {{"points", report.points},
-                                       {"resolution", report.resolution},
-                                       {"used", report.used},
-                                       {"vertices", report.vertices},
-                                       {"tetrahedra", report.tetrahedra},
-                                       {"crossed", report.crossed},
-                                       {"coefficients", report.coefficients},
-                                       {"iterations", report.iterations},
-                                       {"step", surface.mesh.step},
-                                       {"components", topology.components},
-                                       {"open_edges", topology.open_edges},
-                                       {"borders", topology.borders},
-                                       {"genus", topology.genus},
-                                       {"residual_mean", report.residual_mean},
-                                       {"residual_quantile", report.residual_quantile},
-                                       {"residual_max", report.residual_max},
-                                       {"quantile", options.quantile},
-                                       {"outliers", report.outliers},
-                                       {"triangles", mesh.triangles.size()},
-                                       {"deviation", notes.deviation},
-                                       {"bytes", std::filesystem::file_size(options.output)},
-                                       {"seconds", seconds},
-                                       {"warnings", warnings}};
+  nlohmann::ordered_json json = {{"points", report.points},
+                                 {"resolution", report.resolution},
+                                 {"used", report.used},
+                                 {"vertices", report.vertices},
+                                 {"tetrahedra", report.tetrahedra},
+                                 {"crossed", report.crossed},
+                                 {"coefficients", report.coefficients},
+                                 {"iterations", report.iterations},
+                                 {"step", surface.mesh.step},
+                                 {"components", topology.components},
+                                 {"open_edges", topology.open_edges},
+                                 {"borders", topology.borders},
+                                 {"genus", topology.genus},
+                                 {"residual_mean", report.residual_mean},
+                                 {"residual_quantile", report.residual_quantile},
+                                 {"residual_max", report.residual_max},
+                                 {"quantile", options.quantile},
+                                 {"outliers", report.outliers},
+                                 {"triangles", mesh.triangles.size()},
+                                 {"deviation", notes.deviation},
+                                 {"bytes", std::filesystem::file_size(options.output)},
+                                 {"seconds", seconds},
+                                 {"warnings", warnings}};
+  json.update(parts);
   if (program.json) return program.print(json);
   std::vector<std::pair<std::string, std::string>> lines;
   for (const auto& [key, value] : json.items())
@@ -203,6 +265,10 @@ void add_reconstruct(CLI::App& root, Program& program) {
           "--fit", options->fit,
           "How: cholesky (default), cg (the same with less memory, slower), local (no equations: quick, rough)")
       ->type_name("HOW");
+  command->add_option("--parts", options->parts, "Keeps the N parts of the surface with the most points near them")
+      ->type_name("N");
+  command->add_option("--part-points", options->part_points, "Keeps the parts with at least K points near them")
+      ->type_name("K");
   command->add_flag("--closed", options->closed, "The shape is closed: close holes of any size");
   command->add_option("--tetrahedra", options->tetrahedra, "Writes the tetrahedra as well, for ParaView: .vtk")
       ->type_name("FILE");

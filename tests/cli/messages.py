@@ -143,6 +143,8 @@ ROWS = [
     ("reconstruct same.ply -o o.ply", 3, "lie at one place: that makes no surface"), ("reconstruct p.xyz -o o.ply --resolution 1", 2, "the resolution must be from 2 to 1000"),
     ("reconstruct p.xyz -o o.ply --tolerance -2", 2, "--tolerance must be 0 or more"), ("reconstruct p.xyz -o o.ply --adaptive 900 --resolution 9", 2, "chooses the sizes of tetrahedra itself"),
     ("reconstruct p.xyz -o o.ply --max-error 0", 2, "--max-error must be above 0"), ("reconstruct p.xyz -o o.ply --max-error 1 --quantile 2", 2, "the share of the points that must be within"),
+    ("reconstruct p.xyz -o o.ply --parts 0", 2, "--parts must be 1 or more"), ("reconstruct p.xyz -o o.ply --resolution 4 --part-points 999999", 2, "no part of the surface has 999999 points near it"),
+    ("reconstruct q.json -o o.ply --parts 1", 2, "are for surfaces that are fitted to points"),
     ("reconstruct q.json -o o.ply", 3, "is not a JSON object"), ("reconstruct qkey.json -o o.ply", 3, "is no key of"),
     # curve
     ("curve c.json -o o.svg --size 3x4", 2, "expected WIDTHxHEIGHT in pixels"), ("curve none.json", 4, "no such file"), ("curve nojson.json", 3, "not JSON (line 1, column 2)"), ("curve nokind.json", 3, '"kind" is missing'),

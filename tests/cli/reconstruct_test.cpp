@@ -114,6 +114,38 @@ TEST(Reconstruct, ClosesAShapeThatIsSaidToBeClosed) {
   EXPECT_EQ(closed.json()["genus"], 0);
 }
 
+TEST(Reconstruct, LeavesOutPartsThatAreNotAskedFor) {
+  const ScratchFolder folder;
+  PointCloud cloud = sphere_points(3000, {0, 0, 0}, 0.5);
+  for (const PointCloud& more : {sphere_points(500, {1.3, 0, 0}, 0.3), sphere_points(60, {1.3, 1.3, 0}, 0.15)}) {
+    cloud.positions.insert(cloud.positions.end(), more.positions.begin(), more.positions.end());
+    cloud.normals.insert(cloud.normals.end(), more.normals.begin(), more.normals.end());
+  }
+  folder.put("balls.xyz", xyz_of(cloud));
+  const std::string command = "reconstruct balls.xyz --resolution 14 --overwrite ";
+  const Outcome all = run(folder, command + "-o all.ply --json");
+  ASSERT_EQ(all.code, 0) << all.err;
+  EXPECT_EQ(all.json()["parts"], 3);
+  EXPECT_EQ(all.json()["parts_left_out"], 0);
+  EXPECT_NEAR(all.json()["part_list"][2]["points"].get<int>(), 59, 1);
+  EXPECT_NE(all.err.find("the surface has 3 parts, "), std::string::npos) << all.err;
+  for (const auto& [option, kept] :
+       {std::pair{"--parts 1", 1}, {"--parts 9", 3}, {"--part-points 61", 2}, {"--parts 2 --part-points 501", 1}}) {
+    for (const std::string file : {"some.ply", "some.retalho"}) {
+      const Outcome some = run(folder, command + option + " --json -o " + file);
+      ASSERT_EQ(some.code, 0) << some.err;
+      EXPECT_EQ(some.json()["components"], kept) << option;
+      EXPECT_EQ(some.json()["parts_left_out"], 3 - kept);
+      EXPECT_EQ(some.json()["open_edges"], 0);
+      EXPECT_EQ(some.json()["part_list"][0]["kept"], true);
+      EXPECT_EQ(some.err.find("left out") != std::string::npos, kept < 3) << some.err;
+    }
+    // The model's triangles are the same.
+    ASSERT_EQ(run(folder, "mesh some.retalho -o again.ply --overwrite").code, 0);
+    EXPECT_EQ(read_file(folder / "again.ply").size(), read_file(folder / "some.ply").size());
+  }
+}
+
 TEST(Reconstruct, MillimetresFiveThousandKilometresOut) {
   // A field of 20 m with waves of 3 mm, written with a tenth of a millimetre, far from the origin as surveys are.
   const ScratchFolder folder;

@@ -248,13 +248,6 @@ class AdaptiveFit {
     return grid;
   }
 
-  /// The leaf of each tetrahedron.
-  static std::vector<std::uint32_t> leaves_of(const TetMesh& mesh) {
-    std::vector<std::uint32_t> leaves(mesh.tets.size());
-    for (const auto& [leaf, tet] : mesh.tet_of_leaf) leaves[tet] = leaf;
-    return leaves;
-  }
-
   /// Without those whose piece of the surface hangs together with none that holds points.
   std::vector<std::uint32_t> kept(const TetraQuad& surface, const std::vector<std::uint32_t>& leaves,
                                   const std::map<std::uint32_t, std::size_t>& counts) {

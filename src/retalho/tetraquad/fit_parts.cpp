@@ -104,8 +104,7 @@ void solve_added(TetraQuad& surface, const HalfFaces& faces, const std::vector<c
     solve_new(surface, faces, is_new, weights, context);
 }
 
-void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQuadErrorOptions& error,
-             TetraQuadFitReport& report) {
+void count_sizes(const TetraQuadField& field, TetraQuadFitReport& report) {
   const TetMesh& mesh = field.surface().mesh;
   report.vertices = mesh.lattice.size();
   report.tetrahedra = mesh.tets.size();
@@ -117,6 +116,11 @@ void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQua
     for (const std::uint32_t v : mesh.tets[t]) live[v] = 1;
   }
   report.coefficients = 10 * static_cast<std::size_t>(std::count(live.begin(), live.end(), 1));
+}
+
+void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQuadErrorOptions& error,
+             TetraQuadFitReport& report) {
+  count_sizes(field, report);
   std::vector<double> residuals;
   residuals.reserve(runs.size());
   double sum = 0;

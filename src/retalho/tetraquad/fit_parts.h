@@ -36,6 +36,9 @@ void solve_added(TetraQuad& surface, const HalfFaces& faces, const std::vector<c
                  const ClosedGuide* guide, const EnergyWeights& weights, const TetraQuadFitOptions& options,
                  const Context& context);
 
+/// The sizes of the finished surface: vertices, tetrahedra, crossed ones, coefficients.
+void count_sizes(const TetraQuadField& field, TetraQuadFitReport& report);
+
 /// Sizes and residuals of the finished surface.
 void measure(const TetraQuadField& field, const SampleRuns& runs, const TetraQuadErrorOptions& error,
              TetraQuadFitReport& report);

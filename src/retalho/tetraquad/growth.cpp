@@ -191,6 +191,12 @@ std::vector<TetPlace> useful_places(const TetraQuad& surface, const HalfFaces& f
 
 }  // namespace
 
+std::vector<std::uint32_t> leaves_of(const TetMesh& mesh) {
+  std::vector<std::uint32_t> leaves(mesh.tets.size());
+  for (const auto& [leaf, tet] : mesh.tet_of_leaf) leaves[tet] = leaf;
+  return leaves;
+}
+
 std::vector<char> hanging_together(const TetraQuadField& field, const HalfFaces& faces, std::vector<char> seeds) {
   std::vector<std::uint32_t> stack;
   for (std::uint32_t t = 0; t < seeds.size(); ++t)

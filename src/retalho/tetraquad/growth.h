@@ -16,6 +16,9 @@ namespace retalho {
 /// marked.
 TetraQuad moved_to(const TetraQuad& surface, TetMesh mesh, std::vector<char>* is_new);
 
+/// The leaf of each tetrahedron of an adaptive mesh.
+std::vector<std::uint32_t> leaves_of(const TetMesh& mesh);
+
 /// The marked vertices' quadrics minimise the energy's smoothing terms together, the others stay.
 void solve_new(TetraQuad& surface, const HalfFaces& faces, const std::vector<char>& is_new,
                const EnergyWeights& weights, const Context& context);
