@@ -170,10 +170,8 @@ bool refines_surface(const SurfaceFlags& flags, const BudgetFlags& budget, bool 
   }
   if (from_points) throw UsageError(fmt::format("{} takes grids", what), {}, "--refine");
   SurfaceFlags fitted = flags;
-  fitted.fit = kFits[1];
+  if (flags.fit != kFits[2]) fitted.fit = kFits[1];
   resolve_fit(fitted, from_points);
-  if (flags.fit == kFits[2])
-    throw UsageError(fmt::format("{} fits heights and gradients: --fit z-only needs --refine flat", what), {}, "--fit");
   if (exact) throw UsageError(fmt::format("{} takes a --max-error over 0", what), {}, "--max-error");
   return true;
 }

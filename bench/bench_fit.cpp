@@ -78,7 +78,7 @@ json measure_equal(const Raster& raster, int percent) {
   add("flat", flat);
   add("paper", smooth);
   add("flat_fit", fit_least_squares(flat, raster, {}, context));
-  add("z_only", fit_least_squares(smooth, raster, {.heights_only = true}, context));
+  add("z_only", refine_surface(raster, {.vertices = flat.tin.vertex_count(), .heights_only = true}, context));
   add("fit", fit_least_squares(smooth, raster, {}, context));
   const double start = cpu_seconds();
   const std::size_t equal = 3 * flat.tin.vertex_count() / 5;

@@ -87,11 +87,13 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   // A grid without a range (flat, one cell, all void) leaves nothing to choose: 1 % of it is no tolerance.
   const bool chosen = budget.max_error > 0 || budget.vertices > 0;
   if (chosen && refines_surface(options.surface, options.budget, false)) {
-    fit.terrain = refine_surface(
-        raster,
-        with_effort({.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices},
-                    resolve_effort(options.surface)),
-        context);
+    fit.terrain = refine_surface(raster,
+                                 with_effort({.surface = surface.surface,
+                                              .max_error = budget.max_error,
+                                              .vertices = budget.vertices,
+                                              .heights_only = resolve_fit(options.surface, false) == FitKind::z_only},
+                                             resolve_effort(options.surface)),
+                                 context);
     fit.seconds_triangulation = watch.seconds();
   } else {
     Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);

@@ -106,8 +106,6 @@ void check_fit(const Asked& asked) {
                      "gradients");
   if (asked.cross_derivative != "perpendicular")
     throw UsageError("a least-squares fit takes cross_derivative='perpendicular'", {}, "cross_derivative");
-  if (refined && fit == "z-only")
-    throw UsageError("refine='surface' fits heights and gradients: fit='z-only' needs refine='flat'", {}, "fit");
   if (refined && asked.max_error == 0.0) throw UsageError("refine='surface' takes a max_error over 0", {}, "max_error");
 }
 
@@ -118,13 +116,15 @@ Terrain fit_raster(const Raster& raster, const Asked& asked, const SurfaceOption
   const std::string fit = asked.fit.value_or("interpolate");
   if (refines_surface(asked) && (budget.max_error > 0 || budget.vertices > 0)) {
     const std::string effort = asked.effort.value_or("normal");
-    terrain = refine_surface(
-        raster,
-        with_effort({.surface = surface.surface, .max_error = budget.max_error, .vertices = budget.vertices},
-                    effort == "fast"   ? Effort::fast
-                    : effort == "best" ? Effort::best
-                                       : Effort::normal),
-        context);
+    terrain = refine_surface(raster,
+                             with_effort({.surface = surface.surface,
+                                          .max_error = budget.max_error,
+                                          .vertices = budget.vertices,
+                                          .heights_only = fit == "z-only"},
+                                         effort == "fast"   ? Effort::fast
+                                         : effort == "best" ? Effort::best
+                                                            : Effort::normal),
+                             context);
   } else {
     terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, context);
     if (fit != "interpolate")

@@ -137,6 +137,25 @@ TEST(LeastSquares, VoidsAskForNothing) {
   }
 }
 
+// Data whose outline is not convex: the triangulation goes on to the convex hull, with triangles a hundredth of a cell
+// thin. Their bending must not outweigh the cells along the outline, as it did: the fit was 181 m off where the flat
+// surface was 17 m off.
+TEST(LeastSquares, ThinTrianglesUnderTheOutlineDoNotOutweighTheCells) {
+  Raster raster = hill_grid(60, 120);
+  auto& z = std::get<std::vector<double>>(raster.heights);
+  for (int r = 0; r < raster.rows; ++r)
+    for (int c = r < 100 ? 58 : 59; c < raster.columns; ++c) z[raster.index(c, r)] = std::nan("");
+  for (const SurfaceKind kind : {SurfaceKind::powell_sabin, SurfaceKind::clough_tocher}) {
+    const Terrain start = start_on(raster, kind, 500);
+    LeastSquaresNotes notes;
+    const ErrorReport fitted = assess(fit_least_squares(start, raster, {}, {}, &notes), raster);
+    const ErrorReport flat = assess(start_on(raster, SurfaceKind::linear, 500), raster);
+    EXPECT_LT(fitted.rmse, 0.7 * flat.rmse);
+    EXPECT_LT(fitted.max_error, 2 * flat.max_error);
+    EXPECT_LT(notes.iterations, 200);
+  }
+}
+
 TEST(LeastSquares, ReproducesPlanesAndQuadratics) {
   const auto quadratic = [](int x, int y) { return 3 + 0.5 * x - y + 0.02 * x * x - 0.03 * x * y + 0.01 * y * y; };
   const Raster raster = test::make_grid<double>(40, 33, quadratic);

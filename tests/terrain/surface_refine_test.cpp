@@ -66,6 +66,23 @@ TEST(RefineSurface, BeatsFlatRefinementAtEqualNumbers) {
   }
 }
 
+// The payload of a flat model, on vertices of its own: better than on the flat refinement's, and than the flat surface.
+TEST(RefineSurface, HeightsAloneBeatTheFlatSurfaceAtItsPayload) {
+  const Raster raster = hill_grid(130, 110);
+  const Tin tin = refine_tin(raster, {.vertices = 500});
+  const double flat = assess(make_terrain(tin, raster, {SurfaceKind::linear}), raster).rmse;
+  for (const SurfaceKind kind : {SurfaceKind::powell_sabin, SurfaceKind::clough_tocher}) {
+    const Terrain there =
+        fit_least_squares(make_terrain(tin, raster, {.surface = kind}), raster, {.heights_only = true});
+    const Terrain own = refine_surface(raster, {.surface = kind, .vertices = 500, .heights_only = true});
+    EXPECT_EQ(own.kind, kind);
+    EXPECT_EQ(own.tin.vertex_count(), 500);
+    EXPECT_EQ(own.gradient_kind, GradientKind::normals);  // they follow from the heights: no number is stored for them
+    EXPECT_LT(assess(own, raster).rmse, assess(there, raster).rmse);
+    EXPECT_LT(assess(own, raster).rmse, 0.7 * flat);
+  }
+}
+
 TEST(RefineSurface, EveryStageHelps) {
   const Raster raster = hill_grid(130, 110);
   for (const SurfaceKind kind : kKinds) {
@@ -183,6 +200,10 @@ TEST(RefineSurface, BudgetAndToleranceWhicheverComesFirst) {
 }
 
 TEST(RefineSurface, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(
+      refine_surface(hill_grid(20, 20), {.surface = SurfaceKind::linear, .vertices = 30, .heights_only = true}),
+      UsageError);
+  EXPECT_THROW(refine_surface(hill_grid(20, 20), {.max_error = 1, .heights_only = true}), UsageError);
   const Raster raster = hill_grid(20, 20);
   EXPECT_THROW(refine_surface(raster, {.vertices = 10, .growth = 0}), UsageError);
   EXPECT_THROW(refine_surface(raster, {.vertices = 10, .relocations = -1}), UsageError);

@@ -1,6 +1,5 @@
 // Answers in binary and inputs that are checked (viewer/calls.h), and what is embedded (viewer/page.h).
 #include "viewer/calls.h"
-#include "support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include <iterator>
 
 #include "retalho/core/error.h"
+#include "support/paths.h"
 #include "support/support.h"
 #include "viewer/page.h"
 

@@ -54,6 +54,16 @@ struct Normal {
   }
 };
 
+/// What of its bending counts for a triangle that is thinner than a cell, as those under the outline of data that are
+/// not convex: a step of one cell bends it as the inverse square of its smallest height, and squared that would
+/// outweigh the cells themselves. All of it for the others.
+double bending_share(const FitTriangle& t, double area) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t.corner[(k + 1) % 3] - t.corner[k]));
+  const double height = std::min(1.0, 2 * area / longest), squared = height * height;
+  return squared * squared;
+}
+
 /// The bending of a piece, exactly: the second derivatives are constant (degree 2) or linear (degree 3).
 template <class Element, std::size_t N>
 void add_fairness(const FitBasis<Element>& basis, double weight, Normal<N>& normal) {
@@ -119,7 +129,7 @@ FitElement assemble(const FitTriangle& triangle, const FitGrid& grid, const FitW
                                {Basis::blend(basis.slope[p][1], lower), slope->y, weights.slope}}});
     }
   });
-  if (weights.fairness > 0) add_fairness(basis, weights.fairness, normal);
+  if (weights.fairness > 0) add_fairness(basis, weights.fairness * bending_share(triangle, basis.area), normal);
   FitElement element;
   for (std::size_t j = 0; j < Basis::kUnknowns; ++j) {
     for (std::size_t i = 0; i <= j; ++i) element.a[packed_index(i, j)] = normal.a[j][i];

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/terrain/fit.h"
 #include "retalho/terrain/fit_moves.h"
 #include "retalho/terrain/fit_tolerance.h"
+#include "retalho/terrain/least_squares.h"
 
 namespace retalho {
 namespace {
@@ -21,6 +23,10 @@ void check(const SurfaceRefineOptions& o) {
     throw UsageError(fmt::format("the largest error must be 0 or more, not {}", o.max_error), {}, "max_error");
   if (o.max_error == 0 && o.vertices == 0)
     throw UsageError("refinement of a surface needs a largest error or a budget");
+  if (o.heights_only && o.surface == SurfaceKind::linear)
+    throw UsageError("heights alone are fitted for a smooth surface: a flat one has no gradients to follow them");
+  if (o.heights_only && o.max_error > 0)
+    throw UsageError("heights alone are refined to a number of vertices, not to a largest error", {}, "max_error");
   if (o.relocations < 0 || o.exchanges < 0) throw UsageError("relocations and exchanges must be 0 or more");
 }
 
@@ -56,6 +62,16 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
   context.report("refine", 1);
 }
 
+Terrain refine_heights(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
+  SurfaceRefineOptions flat = options;
+  flat.surface = SurfaceKind::linear;
+  flat.heights_only = false;
+  Tin tin = refine_surface(raster, flat, context).tin;
+  return fit_least_squares(make_terrain(std::move(tin), raster, {.surface = options.surface}, context), raster,
+                           {.heights_only = true, .slope_weight = options.slope_weight, .fairness = options.fairness},
+                           context);
+}
+
 }  // namespace
 
 SurfaceRefineOptions with_effort(SurfaceRefineOptions options, Effort effort) {
@@ -88,6 +104,7 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
 
 Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
   check(options);
+  if (options.heights_only) return refine_heights(raster, options, context);
   FitState state = begin(raster, options, context);
   if (options.max_error > 0) {
     const ToleranceOptions tolerance{options.max_error, options.vertices, options.growth, options.relocations,

@@ -21,6 +21,8 @@ struct SurfaceRefineOptions {
                               ///< valid cells' box are vertices
   int relocations = 3;        ///< sweeps of relocation after the last vertex (Effort::normal)
   int exchanges = 5;          ///< rounds of removal and re-insertion, each followed by a relocation
+  bool heights_only = false;  ///< gradients follow the heights, as in LeastSquaresOptions; for smooth kinds, by a
+                              ///< budget. The vertices are those that the flat surface chooses: the best that are known
   double growth = 0.25;       ///< of the number of vertices a round
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions
   double fairness = 1e-5;
@@ -34,7 +36,8 @@ SurfaceRefineOptions with_effort(SurfaceRefineOptions options, Effort effort);
 /// objective larger is kept. The triangulation is Delaunay in cell coordinates. The same result from any number of
 /// threads. With max_error and no budget every valid cell is within max_error of the surface, as assess() finds;
 /// refinement always ends, at the latest when every cell is a vertex with its own height. One of max_error and vertices
-/// must be given. Throws BadInput as refine_grid, UsageError for options out of range, Interrupted.
+/// must be given. Throws BadInput as refine_grid, UsageError for options out of range or that exclude each other,
+/// Interrupted.
 Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context = {});
 
 }  // namespace retalho
