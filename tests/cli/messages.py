@@ -97,6 +97,8 @@ ROWS = [
     ("fit g.asc -o o.retalho --format compact --cross-derivative cubic", 2, "takes --cross-derivative perpendicular"),
     ("fit g.asc -o o.retalho --format compact --surface powell-sabin", 2, "holds linear and clough-tocher surfaces"),
     ("fit g.asc -o o.retalho --format compact --surface linear --fit z-only", 2, "--fit z-only is for clough-tocher"),
+    ("fit g.asc -o o.retalho --surface linear --refine surface --fit z-only --vertices 30", 2, "heights alone are fitted for a smooth surface"),
+    ("fit g.asc -o o.retalho --refine surface --fit z-only --max-error 1", 2, "heights alone are refined to a number of vertices"),
     ("fit g.asc -o o.retalho --fit least-squares --gradients normals --refine flat", 2, "exclude each other: the fit sets the gradients"),
     ("fit p.xyz -o o.retalho --crs nonsense", 3, "is not a CRS: give a code as EPSG:25832"),
     # compare
