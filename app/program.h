@@ -1,7 +1,7 @@
 // What every subcommand shares: the options of all commands, messages, JSON and progress (docs/cli.md).
 //
 // To add a command: one file in commands/ with `void add_NAME(CLI::App&, Program&)`, its declaration at the end of this
-// header, one row in the table of main.cpp, one page docs/commands/NAME.md, and its tests in tests/cli/.
+// header, one row in the table of command_line.cpp, one page docs/commands/NAME.md, and its tests in tests/cli/.
 #pragma once
 
 #include <CLI/CLI.hpp>

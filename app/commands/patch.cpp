@@ -150,7 +150,7 @@ void write_outputs(const Program& program, const Options& options, const std::ve
     if (ends_with(out, ".retalho")) {
       save_model(PatchSet{patches}, out, program.overwrite);
     } else if (ends_with(out, ".png")) {
-      write_png(draw_patches(patches, surfaces, picture, context), out, program.overwrite);
+      write_png(draw_patches(patches, surfaces, picture, context), out, program.overwrite, context);
     } else {
       if (fine.empty())
         for (std::size_t i = 0; i < patches.size(); ++i)

@@ -151,12 +151,12 @@ bool holds_panels(const std::string& path) {
 }
 
 /// The panels as one picture, and what is said of it: its size, then `facts`.
-void write_sheet(const Program& program, const Options& options, const Layout& layout, const std::vector<Panel>& panels,
+void write_sheet(const Program& program, const Options& options, const Layout& layout, std::vector<Panel> panels,
                  const nlohmann::ordered_json& facts, const Context& context) {
-  const Image sheet = compose(layout, panels);
-  context.check();
-  write_png(sheet, options.output, program.overwrite);
-  nlohmann::ordered_json json = {{"width", sheet.width}, {"height", sheet.height}, {"panels", panels.size()}};
+  const std::size_t count = panels.size();
+  const Image sheet = compose(layout, std::move(panels), context);
+  write_png(sheet, options.output, program.overwrite, context);
+  nlohmann::ordered_json json = {{"width", sheet.width}, {"height", sheet.height}, {"panels", count}};
   for (const auto& [key, value] : facts.items()) json[key] = value;
   json["bytes"] = std::filesystem::file_size(options.output);
   if (program.json) return program.print(json);
@@ -193,7 +193,7 @@ void run_in_space(const Program& program, const Options& options) {
     if (options.captions) panel.caption = {name, words};
     panels.push_back(std::move(panel));
   }
-  write_sheet(program, options, layout, panels, {}, context);
+  write_sheet(program, options, layout, std::move(panels), {}, context);
 }
 
 void run(const Program& program, const Options& options) {
@@ -238,8 +238,8 @@ void run(const Program& program, const Options& options) {
     if (options.captions) panel.caption = shape->caption;
     panels.push_back(std::move(panel));
   }
-  write_sheet(program, options, layout, panels, {{"view", options.view}, {"exaggeration", scene.relief.exaggeration}},
-              context);
+  write_sheet(program, options, layout, std::move(panels),
+              {{"view", options.view}, {"exaggeration", scene.relief.exaggeration}}, context);
 }
 
 }  // namespace

@@ -9,9 +9,7 @@
 #include "retalho/render/tetraquad_picture.h"
 
 namespace retalho::app {
-namespace {
 
-/// "x<0.5" or "z>3": what is kept.
 CutPlane parse_cut(const std::string& text, const Georef& georef) {
   CutPlane cut;
   double value = 0;
@@ -29,8 +27,6 @@ CutPlane parse_cut(const std::string& text, const Georef& georef) {
   cut.offset = sign * value;
   return cut;
 }
-
-}  // namespace
 
 void add_tetraquad_flags(CLI::App& command, TetraQuadFlags& flags) {
   command.add_option("--up", flags.up, "TetraQuad models: the axis that points up, x, y or z (default z)")

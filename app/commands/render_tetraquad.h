@@ -7,6 +7,7 @@
 
 #include "program.h"
 #include "retalho/render/compose.h"
+#include "retalho/render/tetraquad_picture.h"
 #include "retalho/tetraquad/tetraquad.h"
 
 namespace retalho::app {
@@ -17,6 +18,9 @@ struct TetraQuadFlags {
   bool outlines = false, jumps = false;
 };
 void add_tetraquad_flags(CLI::App& command, TetraQuadFlags& flags);
+
+/// "x<0.5" or "z>3": what is kept. Throws UsageError.
+CutPlane parse_cut(const std::string& text, const Georef& georef);
 
 /// One panel, without a caption. Throws UsageError for a cut that cannot be read.
 Image draw_panel(const TetraQuad& surface, const TetraQuadFlags& flags, std::optional<double> from, double elevation,

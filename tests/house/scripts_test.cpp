@@ -1,8 +1,9 @@
-// The scripts that judge: the counter of scripts/test and the table of scripts/targets.
+// The scripts that judge: the counter of scripts/test, the table of scripts/targets and the counts of scripts/fuzz.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include "support/paths.h"
@@ -16,9 +17,9 @@ struct Outcome {
   std::string last_line;
 };
 
-Outcome run_script(const std::string& arguments) {
+Outcome run_script(const std::string& arguments, const std::string& environment = "") {
   Outcome run;
-  std::FILE* pipe = ::popen((test::source_folder() + "/scripts/" + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe = ::popen((environment + test::source_folder() + "/scripts/" + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return run;
   std::string text;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
@@ -83,6 +84,47 @@ TEST_F(CountTests, AFailedCheckAndNoTestAtAllAreFailures) {
 TEST(Targets, EveryRowIsComplete) {
   const Outcome run = run_script("targets --list");
   EXPECT_EQ(run.code, 0) << run.last_line;
+}
+
+/// scripts/fuzz with a program of the test's own in the place of the fuzzer of PGM.
+class Fuzz : public testing::Test {
+ protected:
+  Outcome fuzz(const std::string& words) {
+    return run_script("fuzz " + words, "RETALHO_FUZZ_BUILD='" + folder_.path().string() + "' ");
+  }
+  void fuzzer(const std::string& lines) {
+    const std::string file = folder_.put("tests/fuzz/fuzz_pgm", "#!/bin/sh\n" + lines + "\n");
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+  test::ScratchFolder folder_;
+};
+
+TEST_F(Fuzz, CountsAreInTheLastLineAndAddUp) {
+  fuzzer("echo 'stat::number_of_executed_units: 1200'");
+  EXPECT_EQ(fuzz("1 pgm").last_line, R"({"executions": {"pgm": {"run": 1200, "total": 1200}}, "broken": false})");
+  const Outcome again = fuzz("--until 1000 pgm");
+  EXPECT_EQ(again.last_line, R"({"executions": {"pgm": {"run": 1200, "total": 2400}}, "broken": false})");
+  EXPECT_EQ(again.code, 0);
+}
+
+TEST_F(Fuzz, UntilIsPassedOnAndFallingShortIsAFailure) {
+  fuzzer(R"(case "$*" in *-runs=5000*) echo 'stat::number_of_executed_units: 4000';; esac)");
+  const Outcome run = fuzz("--until 5000 pgm");
+  EXPECT_EQ(run.last_line, R"({"executions": {"pgm": {"run": 4000, "total": 4000}}, "broken": true})");
+  EXPECT_EQ(run.code, 1);
+}
+
+TEST_F(Fuzz, ABrokenTargetIsAFailureWithTheExecutionsSoFar) {
+  fuzzer("echo '#64 NEW cov: 9'; echo '==1== ERROR: AddressSanitizer'; exit 77");
+  const Outcome run = fuzz("1 pgm");
+  EXPECT_EQ(run.last_line, R"({"executions": {"pgm": {"run": 64, "total": 64}}, "broken": true})");
+  EXPECT_EQ(run.code, 1);
+}
+
+TEST_F(Fuzz, WordsThatAreNoneAreRefused) {
+  EXPECT_EQ(fuzz("1 nonsense").code, 2);
+  EXPECT_EQ(fuzz("0 pgm").code, 2);
+  EXPECT_EQ(fuzz("--until many pgm").last_line, "fuzz: --until takes a number of executions, not 'many'");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "retalho/core/error.h"
 #include "retalho/render/text.h"
@@ -54,13 +55,15 @@ Layout grow_layout(int panels, int width, int height, int caption_lines) {
           caption};
 }
 
-Image compose(const Layout& layout, const std::vector<Panel>& panels) {
+Image compose(const Layout& layout, std::vector<Panel> panels, const Context& context) {
   Image sheet(layout.sheet_width, layout.sheet_height);
   for (int k = 0; k < static_cast<int>(panels.size()); ++k) {
-    const Image& picture = panels[static_cast<std::size_t>(k)].picture;
-    for (int y = 0; y < std::min(picture.height, layout.height); ++y)
+    const Image picture = std::move(panels[static_cast<std::size_t>(k)].picture);  // gone when it is on the sheet
+    for (int y = 0; y < std::min(picture.height, layout.height); ++y) {
+      context.check();
       for (int x = 0; x < std::min(picture.width, layout.width); ++x)
         sheet.at(layout.left(k) + x, layout.top(k) + y) = picture.at(x, y);
+    }
   }
   if (layout.caption == 0) return sheet;
   const Font font(kCaptionPixels);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "retalho/core/context.h"
 #include "retalho/render/image.h"
 
 namespace retalho {
@@ -34,7 +35,8 @@ struct Panel {
   std::vector<std::string> caption;  ///< one string a line; too long ones are shortened in the middle
 };
 
-/// Throws CannotRead when captions are asked for and the font is missing.
-Image compose(const Layout& layout, const std::vector<Panel>& panels);
+/// Each panel's picture is let go when it is on the sheet. Throws CannotRead when captions are asked for and the font
+/// is missing.
+Image compose(const Layout& layout, std::vector<Panel> panels, const Context& context = {});
 
 }  // namespace retalho

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "retalho/core/context.h"
+
 namespace retalho {
 
 struct Rgb {
@@ -29,6 +31,6 @@ struct Image {
 };
 
 /// Atomic. Throws CannotWrite.
-void write_png(const Image& image, const std::string& path, bool overwrite = false);
+void write_png(const Image& image, const std::string& path, bool overwrite = false, const Context& context = {});
 
 }  // namespace retalho

@@ -2,16 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "retalho/core/error.h"
+#include "retalho/core/parallel.h"
 #include "retalho/patch/joins.h"
+#include "retalho/render/band_lists.h"
 #include "retalho/render/color.h"
 
 namespace retalho {
 namespace {
 
-constexpr int kSamples = 3;  ///< a side of a pixel
+constexpr int kSamples = 3;               ///< a side of a pixel
+constexpr double kLine = 0.6 * kSamples;  ///< half of a side's line
 
 struct Corner {
   Vec3 place, normal;  ///< x to the right, y up, z towards the eye
@@ -21,8 +27,6 @@ struct Corner {
 
 struct View {
   Vec3 right, up, towards;
-  Vec2 middle;
-  double scale = 1;
 };
 
 double radians(double degrees) {
@@ -38,23 +42,22 @@ View look(double from, double elevation) {
   return view;
 }
 
+/// A band of the picture's samples, y up: the rows [first, end). What lies in other rows is not drawn.
 class Canvas {
  public:
-  Canvas(int width, int height)
-      : width_(width), height_(height), color_(size(), Color{1, 1, 1}), depth_(size(), -1e300) {}
-  int width() const { return width_; }
-  int height() const { return height_; }
+  Canvas(int width, int first, int end)
+      : width_(width), first_(first), end_(end), color_(size(), Color{1, 1, 1}), depth_(size(), -1e300) {}
 
   template <typename Shade>
   void triangle(const std::array<Corner, 3>& c, const Shade& shade) {
     const auto flat = [](const Corner& k) { return Vec2{k.place.x, k.place.y}; };
     const Vec2 a = flat(c[0]), b = flat(c[1]), d = flat(c[2]);
     const double area = cross(b - a, d - a);
-    if (area == 0) return;
+    if (area == 0 || !std::isfinite(area)) return;
     const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x, b.x, d.x})))),
               x1 = std::min(width_ - 1, static_cast<int>(std::floor(std::max({a.x, b.x, d.x})))),
-              y0 = std::max(0, static_cast<int>(std::ceil(std::min({a.y, b.y, d.y})))),
-              y1 = std::min(height_ - 1, static_cast<int>(std::floor(std::max({a.y, b.y, d.y}))));
+              y0 = std::max(first_, static_cast<int>(std::ceil(std::min({a.y, b.y, d.y})))),
+              y1 = std::min(end_ - 1, static_cast<int>(std::floor(std::max({a.y, b.y, d.y}))));
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const Vec2 p{static_cast<double>(x), static_cast<double>(y)};
@@ -75,7 +78,7 @@ class Canvas {
       const Vec3 p = a + (static_cast<double>(k) / steps) * (b - a);
       for (int y = static_cast<int>(std::ceil(p.y - radius)); y <= std::floor(p.y + radius); ++y)
         for (int x = static_cast<int>(std::ceil(p.x - radius)); x <= std::floor(p.x + radius); ++x) {
-          if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
+          if (x < 0 || y < first_ || x >= width_ || y >= end_) continue;
           if ((x - p.x) * (x - p.x) + (y - p.y) * (y - p.y) > radius * radius) continue;
           if (depth_[index(x, y)] > p.z + slack) continue;
           color_[index(x, y)] = color;
@@ -83,25 +86,24 @@ class Canvas {
     }
   }
 
-  Image image() const {
-    Image out(width_ / kSamples, height_ / kSamples);
-    for (int y = 0; y < out.height; ++y)
+  /// Its pixels into the picture, whose samples have `height` rows.
+  void put(Image& out, int height) const {
+    for (int y = (height - end_) / kSamples; y < (height - first_) / kSamples; ++y)
       for (int x = 0; x < out.width; ++x) {
         Color sum;
         for (int j = 0; j < kSamples; ++j)
           for (int i = 0; i < kSamples; ++i)
-            sum = sum + color_[index(x * kSamples + i, height_ - 1 - (y * kSamples + j))];
+            sum = sum + color_[index(x * kSamples + i, height - 1 - (y * kSamples + j))];
         out.at(x, y) = to_rgb((1.0 / (kSamples * kSamples)) * sum);
       }
-    return out;
   }
 
  private:
-  std::size_t size() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+  std::size_t size() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(end_ - first_); }
   std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y - first_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
-  int width_, height_;
+  int width_, first_, end_;
   std::vector<Color> color_;
   std::vector<double> depth_;
 };
@@ -154,27 +156,37 @@ class Painter {
   double range_;
 };
 
-}  // namespace
+/// What is drawn of one patch: its places are in the picture's samples.
+struct Sheet {
+  std::vector<Corner> corners;
+  Domain domain;
+};
 
-Image draw_patches(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
-                   const PatchPictureOptions& options, const Context& context) {
-  if (options.width < 16 || options.height < 16 || options.width > 20000 || options.height > 20000)
-    throw UsageError("a picture has 16 to 20000 pixels a side", {}, "--size");
-  if (patches.empty() || patches.size() != surfaces.size()) throw UsageError("there is no patch to draw");
-  View view = look(options.from, options.elevation);
-  std::vector<std::vector<Corner>> corners(patches.size());
-  std::vector<Patch> fine;
+/// Heights of `values` that 95 of 100 are below; 1 where there are none.
+double usual_range(std::vector<double>& values) {
+  if (values.empty()) return 1;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at > 0 ? *at : 1;
+}
+
+/// The patches cut finely, seen by the view, and the range of their curvatures.
+std::vector<Sheet> cut_finely(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
+                              const PatchPictureOptions& options, double& range, const Context& context) {
+  const View view = look(options.from, options.elevation);
+  std::vector<Sheet> sheets(patches.size());
   std::vector<double> values;
   Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
   for (std::size_t i = 0; i < patches.size(); ++i) {
     context.check();
     const std::size_t side =
         static_cast<std::size_t>(std::sqrt(static_cast<double>(patches[i].domain.triangles.size())));
-    fine.push_back(
-        refine(patches[i], surfaces[i], std::clamp<std::size_t>(192 / std::max<std::size_t>(side, 1), 1, 64)));
-    for (std::size_t k = 0; k < fine[i].positions.size(); ++k) {
-      const Vec3 p = fine[i].positions[k];
-      const Vec2 uv = fine[i].domain.parameters[k];
+    Patch fine = refine(patches[i], surfaces[i], std::clamp<std::size_t>(192 / std::max<std::size_t>(side, 1), 1, 64));
+    sheets[i].corners.reserve(fine.positions.size());
+    for (std::size_t k = 0; k < fine.positions.size(); ++k) {
+      if (k % 1024 == 0) context.check();
+      const Vec3 p = fine.positions[k];
+      const Vec2 uv = fine.domain.parameters[k];
       const PatchJet jet = surfaces[i].full_jet(uv);
       Corner c;
       c.place = {dot(p, view.right), dot(p, view.up), dot(p, view.towards)};
@@ -187,45 +199,96 @@ Image draw_patches(std::span<const Patch> patches, std::span<const PatchSurface>
       }
       low = {std::min(low.x, c.place.x), std::min(low.y, c.place.y)};
       high = {std::max(high.x, c.place.x), std::max(high.y, c.place.y)};
-      corners[i].push_back(c);
+      sheets[i].corners.push_back(c);
     }
+    sheets[i].domain = std::move(fine.domain);
   }
+  range = usual_range(values);
+  const double width = options.width * kSamples, height = options.height * kSamples;
+  const double scale =
+      0.92 * std::min(width / std::max(high.x - low.x, 1e-300), height / std::max(high.y - low.y, 1e-300));
+  const Vec3 middle{(low.x + high.x) / 2, (low.y + high.y) / 2, 0}, centre{width / 2, height / 2, 0};
+  for (Sheet& sheet : sheets)
+    for (Corner& c : sheet.corners) c.place = centre + scale * (c.place - middle);
+  return sheets;
+}
+
+/// A triangle, or an edge of a side, by its patch and its number there.
+struct Piece {
+  std::uint32_t sheet, first, second;  ///< of an edge: its ends; of a triangle: its number twice
+};
+
+/// Puts all triangles, and with `sides` the edges of the sides, once.
+void put_all(const std::vector<Sheet>& sheets, bool sides, BandLists<Piece>& triangles, BandLists<Piece>& edges,
+             const Context& context) {
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    context.check();
+    const auto sheet = static_cast<std::uint32_t>(i);
+    const auto y = [&](std::uint32_t v) { return sheets[i].corners[v].place.y; };
+    const Domain& domain = sheets[i].domain;
+    for (std::uint32_t t = 0; t < domain.triangles.size(); ++t) {
+      const auto& v = domain.triangles[t];
+      const auto [low, high] = std::minmax({y(v[0]), y(v[1]), y(v[2])});
+      triangles.put({sheet, t, t}, low, high);
+    }
+    if (!sides) continue;
+    for (const auto& side : domain.sides)
+      for (std::size_t k = 0; k + 1 < side.size(); ++k) {
+        const auto [low, high] = std::minmax({y(side[k]), y(side[k + 1])});
+        edges.put({sheet, side[k], side[k + 1]}, low - kLine, high + kLine);
+      }
+  }
+}
+
+void draw_triangle(const Sheet& sheet, const std::array<std::uint32_t, 3>& t, const Painter& painter, Canvas& canvas) {
+  const std::array<Corner, 3> c = {sheet.corners[t[0]], sheet.corners[t[1]], sheet.corners[t[2]]};
+  // Parameters a sample: so lines are equally wide wherever they run.
+  const double span = std::sqrt(std::abs(cross(c[1].uv - c[0].uv, c[2].uv - c[0].uv)));
+  const Vec3 e = c[1].place - c[0].place, f = c[2].place - c[0].place;
+  const double pixels = std::sqrt(norm(cross(e, f)));
+  const double line_width = pixels > 0 ? 1.3 * span / pixels : 1;
+  canvas.triangle(c, [&](const std::array<double, 3>& l) {
+    return painter(l[0] * c[0].normal + l[1] * c[1].normal + l[2] * c[2].normal,
+                   l[0] * c[0].uv + l[1] * c[1].uv + l[2] * c[2].uv,
+                   l[0] * c[0].value + l[1] * c[1].value + l[2] * c[2].value, line_width);
+  });
+}
+
+}  // namespace
+
+Image draw_patches(std::span<const Patch> patches, std::span<const PatchSurface> surfaces,
+                   const PatchPictureOptions& options, const Context& context) {
+  if (options.width < 16 || options.height < 16 || options.width > 20000 || options.height > 20000)
+    throw UsageError("a picture has 16 to 20000 pixels a side", {}, "--size");
+  if (patches.empty() || patches.size() != surfaces.size()) throw UsageError("there is no patch to draw");
   double range = 1;
-  if (!values.empty()) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    range = *at > 0 ? *at : 1;
-  }
-  Canvas canvas(options.width * kSamples, options.height * kSamples);
-  view.scale = 0.92 * std::min(canvas.width() / std::max(high.x - low.x, 1e-300),
-                               canvas.height() / std::max(high.y - low.y, 1e-300));
-  const Vec3 middle{(low.x + high.x) / 2, (low.y + high.y) / 2, 0};
-  const Vec3 centre{canvas.width() / 2.0, canvas.height() / 2.0, 0};
+  const std::vector<Sheet> sheets = cut_finely(patches, surfaces, options, range, context);
   const Painter painter(options, range);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    context.report("drawing", static_cast<double>(i) / static_cast<double>(patches.size()));
-    for (Corner& c : corners[i]) c.place = centre + view.scale * (c.place - middle);
-    for (const auto& t : fine[i].domain.triangles) {
-      const std::array<Corner, 3> c = {corners[i][t[0]], corners[i][t[1]], corners[i][t[2]]};
-      // Parameters a sample: so lines are equally wide wherever they run.
-      const double span = std::sqrt(std::abs(cross(c[1].uv - c[0].uv, c[2].uv - c[0].uv)));
-      const Vec3 e = c[1].place - c[0].place, f = c[2].place - c[0].place;
-      const double pixels = std::sqrt(norm(cross(e, f)));
-      const double line_width = pixels > 0 ? 1.3 * span / pixels : 1;
-      canvas.triangle(c, [&](const std::array<double, 3>& l) {
-        return painter(l[0] * c[0].normal + l[1] * c[1].normal + l[2] * c[2].normal,
-                       l[0] * c[0].uv + l[1] * c[1].uv + l[2] * c[2].uv,
-                       l[0] * c[0].value + l[1] * c[1].value + l[2] * c[2].value, line_width);
-      });
+  const int width = options.width * kSamples, height = options.height * kSamples;
+  const int rows = kSamples * std::max(1, kBandSamples / (kSamples * width));
+  BandLists<Piece> triangles(height, rows), edges(height, rows);
+  put_all(sheets, options.sides, triangles, edges, context);
+  triangles.turn();
+  edges.turn();
+  put_all(sheets, options.sides, triangles, edges, context);
+  Image image(options.width, options.height);
+  context.report("drawing", 0);
+  parallel_chunks(triangles.count(), 1, context, [&](std::size_t band, std::size_t) {
+    const auto [first, end] = triangles.rows(band);
+    Canvas canvas(width, first, end);
+    std::size_t drawn = 0;
+    for (const Piece& p : triangles.of(band)) {
+      if (++drawn % 1024 == 0) context.check();
+      draw_triangle(sheets[p.sheet], sheets[p.sheet].domain.triangles[p.first], painter, canvas);
     }
-  }
-  if (options.sides)
-    for (std::size_t i = 0; i < patches.size(); ++i)
-      for (const auto& side : fine[i].domain.sides)
-        for (std::size_t k = 0; k + 1 < side.size(); ++k)
-          canvas.line(corners[i][side[k]].place, corners[i][side[k + 1]].place, 0.6 * kSamples, 2.0 * kSamples,
-                      {0.10, 0.13, 0.20});
-  return canvas.image();
+    for (const Piece& p : edges.of(band)) {
+      const std::vector<Corner>& corners = sheets[p.sheet].corners;
+      canvas.line(corners[p.first].place, corners[p.second].place, kLine, 2.0 * kSamples, {0.10, 0.13, 0.20});
+    }
+    canvas.put(image, height);
+  });
+  context.report("drawing", 1);
+  return image;
 }
 
 }  // namespace retalho

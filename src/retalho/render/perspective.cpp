@@ -6,6 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "retalho/core/parallel.h"
+#include "retalho/render/band_lists.h"
+
 namespace retalho {
 namespace {
 
@@ -41,16 +44,17 @@ class Camera {
   Vec3 eye_, forward_, right_, up_;
 };
 
-/// Colours with a z-buffer.
+/// Colours with a z-buffer, of a band of the picture's samples: the rows [first, end).
 struct Canvas {
-  int width, height;
+  int width, first, end;
   std::vector<float> nearness;
   std::vector<std::array<float, 3>> colors;
 
-  Canvas(int w, int h)
+  Canvas(int w, int from, int to)
       : width(w),
-        height(h),
-        nearness(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 0.0F),
+        first(from),
+        end(to),
+        nearness(static_cast<std::size_t>(w) * static_cast<std::size_t>(to - from), 0.0F),
         colors(nearness.size(), {1.0F, 1.0F, 1.0F}) {}
 
   void triangle(const std::array<ScreenPoint, 3>& p, const std::array<Color, 3>& c) {
@@ -60,8 +64,8 @@ struct Canvas {
     const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
     const int x0 = std::max(0, static_cast<int>(std::ceil(left - 0.5)));
     const int x1 = std::min(width - 1, static_cast<int>(std::floor(right - 0.5)));
-    const int y0 = std::max(0, static_cast<int>(std::ceil(top - 0.5)));
-    const int y1 = std::min(height - 1, static_cast<int>(std::floor(bottom - 0.5)));
+    const int y0 = std::max(first, static_cast<int>(std::ceil(top - 0.5)));
+    const int y1 = std::min(end - 1, static_cast<int>(std::floor(bottom - 0.5)));
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const double px = x + 0.5, py = y + 0.5;
@@ -70,8 +74,7 @@ struct Canvas {
         const double t = 1 - r - s;
         if (r < 0 || s < 0 || t < 0) continue;
         const auto near = static_cast<float>(r * p[0].nearness + s * p[1].nearness + t * p[2].nearness);
-        const std::size_t i =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+        const std::size_t i = index(x, y);
         if (near <= nearness[i]) continue;
         nearness[i] = near;
         const Color mix = r * c[0] + s * c[1] + t * c[2];
@@ -82,6 +85,23 @@ struct Canvas {
   void quad(const std::array<ScreenPoint, 4>& p, const std::array<Color, 4>& c) {
     triangle({p[0], p[1], p[2]}, {c[0], c[1], c[2]});
     triangle({p[0], p[2], p[3]}, {c[0], c[2], c[3]});
+  }
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+
+  /// Its pixels into the picture.
+  void put(Image& image) const {
+    for (int y = first / kSamples; y < end / kSamples; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        Color sum;
+        for (int k = 0; k < kSamples * kSamples; ++k) {
+          const auto& c = colors[index(x * kSamples + k % kSamples, y * kSamples + k / kSamples)];
+          sum = sum + Color{c[0], c[1], c[2]};
+        }
+        image.at(x, y) = to_rgb(1.0 / (kSamples * kSamples) * sum);
+      }
   }
 };
 
@@ -108,7 +128,7 @@ Window sample_window(const Georef& georef, const Extent& extent, int width, int 
 }
 
 Scene make_scene(const HeightField& field, const std::vector<double>& values, const Window& window,
-                 const PerspectiveOptions& options, const Range& range) {
+                 const PerspectiveOptions& options, const Range& range, const Context& context) {
   const ReliefOptions& relief = options.relief;
   const double z = relief.exaggeration;
   const Vec2 middle = window.at((window.columns - 1) / 2.0, (window.rows - 1) / 2.0);
@@ -121,15 +141,17 @@ Scene make_scene(const HeightField& field, const std::vector<double>& values, co
   scene.top.resize(field.heights.size());
   scene.foot.resize(field.heights.size());
   scene.colors.resize(field.heights.size());
-  for (int row = 0; row < window.rows; ++row)
-    for (int column = 0; column < window.columns; ++column) {
-      const std::size_t i = scene.index(column, row);
-      if (std::isnan(field.heights[i]) || std::isnan(values[i])) continue;
-      const Vec2 p = window.at(column, row);
-      scene.top[i] = camera.project({p.x, p.y, z * field.heights[i]});
-      scene.foot[i] = camera.project({p.x, p.y, z * options.base});
-      scene.colors[i] = shade(field.gradients[i], relief) * ramp_color(relief.ramp, (values[i] - relief.low) * scale);
-    }
+  parallel_chunks(static_cast<std::size_t>(window.rows), 16, context, [&](std::size_t begin, std::size_t end) {
+    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row)
+      for (int column = 0; column < window.columns; ++column) {
+        const std::size_t i = scene.index(column, row);
+        if (std::isnan(field.heights[i]) || std::isnan(values[i])) continue;
+        const Vec2 p = window.at(column, row);
+        scene.top[i] = camera.project({p.x, p.y, z * field.heights[i]});
+        scene.foot[i] = camera.project({p.x, p.y, z * options.base});
+        scene.colors[i] = shade(field.gradients[i], relief) * ramp_color(relief.ramp, (values[i] - relief.low) * scale);
+      }
+  });
   return scene;
 }
 
@@ -156,7 +178,31 @@ void fit_scene(Scene& scene, int width, int height) {
     }
 }
 
-void draw_scene(const Scene& scene, Canvas& canvas, const Context& context) {
+/// Cells of a row, from column `first` on, that are drawn one after the other.
+struct Run {
+  int row, first;
+};
+constexpr int kRun = 64;
+
+/// Puts the runs that touch each band, once.
+void put_runs(const Scene& scene, BandLists<Run>& bands, const Context& context) {
+  for (int row = 0; row + 1 < scene.rows; ++row) {
+    context.check();
+    for (int first = 0; first + 1 < scene.columns; first += kRun) {
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (int r = row; r <= row + 1; ++r)
+        for (int column = first; column <= std::min(first + kRun, scene.columns - 1); ++column) {
+          const std::size_t i = scene.index(column, r);
+          if (!scene.data(i)) continue;
+          low = std::min({low, scene.top[i].y, scene.foot[i].y});
+          high = std::max({high, scene.top[i].y, scene.foot[i].y});
+        }
+      bands.put({row, first}, low - 1, high + 1);
+    }
+  }
+}
+
+void draw_run(const Scene& scene, const Run& run, Canvas& canvas) {
   const auto cell = [&](int column, int row) {
     return column >= 0 && row >= 0 && column + 1 < scene.columns && row + 1 < scene.rows &&
            scene.data(scene.index(column, row)) && scene.data(scene.index(column + 1, row)) &&
@@ -166,21 +212,38 @@ void draw_scene(const Scene& scene, Canvas& canvas, const Context& context) {
     const Color gray{kWallBrightness, kWallBrightness, kWallBrightness};
     canvas.quad({scene.top[a], scene.top[b], scene.foot[b], scene.foot[a]}, {gray, gray, gray, gray});
   };
-  for (int row = 0; row + 1 < scene.rows; ++row) {
-    context.check();
-    context.report("drawing", static_cast<double>(row) / scene.rows);
-    for (int column = 0; column + 1 < scene.columns; ++column) {
-      if (!cell(column, row)) continue;
-      const std::size_t nw = scene.index(column, row), ne = nw + 1, sw = scene.index(column, row + 1), se = sw + 1;
-      canvas.quad({scene.top[nw], scene.top[ne], scene.top[se], scene.top[sw]},
-                  {scene.colors[nw], scene.colors[ne], scene.colors[se], scene.colors[sw]});
-      if (!cell(column, row - 1)) wall(nw, ne);
-      if (!cell(column, row + 1)) wall(sw, se);
-      if (!cell(column - 1, row)) wall(nw, sw);
-      if (!cell(column + 1, row)) wall(ne, se);
-    }
+  const int row = run.row;
+  for (int column = run.first; column < std::min(run.first + kRun, scene.columns - 1); ++column) {
+    if (!cell(column, row)) continue;
+    const std::size_t nw = scene.index(column, row), ne = nw + 1, sw = scene.index(column, row + 1), se = sw + 1;
+    canvas.quad({scene.top[nw], scene.top[ne], scene.top[se], scene.top[sw]},
+                {scene.colors[nw], scene.colors[ne], scene.colors[se], scene.colors[sw]});
+    if (!cell(column, row - 1)) wall(nw, ne);
+    if (!cell(column, row + 1)) wall(sw, se);
+    if (!cell(column - 1, row)) wall(nw, sw);
+    if (!cell(column + 1, row)) wall(ne, se);
   }
+}
+
+Image draw_scene(const Scene& scene, int width, int height, const Context& context) {
+  const int rows = kSamples * std::max(1, kBandSamples / (kSamples * kSamples * width));
+  BandLists<Run> bands(height * kSamples, rows);
+  put_runs(scene, bands, context);
+  bands.turn();
+  put_runs(scene, bands, context);
+  Image image(width, height);
+  context.report("drawing", 0);
+  parallel_chunks(bands.count(), 1, context, [&](std::size_t band, std::size_t) {
+    const auto [first, end] = bands.rows(band);
+    Canvas canvas(width * kSamples, first, end);
+    for (const Run& run : bands.of(band)) {
+      context.check();
+      draw_run(scene, run, canvas);
+    }
+    canvas.put(image);
+  });
   context.report("drawing", 1);
+  return image;
 }
 
 }  // namespace
@@ -188,8 +251,8 @@ void draw_scene(const Scene& scene, Canvas& canvas, const Context& context) {
 Image draw_perspective(const FieldSource& surface, const Georef& georef, const Extent& extent, int width, int height,
                        const PerspectiveOptions& options, const FieldSource& color, const Context& context) {
   const Window window = sample_window(georef, extent, width, height);
-  const HeightField field = surface(window, context);
-  const HeightField other = color ? color(window, context) : HeightField{};
+  HeightField field = surface(window, context);
+  HeightField other = color ? color(window, context) : HeightField{};
   Range range{0, 1};
   bool any = false;
   for (const double h : field.heights) {
@@ -198,23 +261,10 @@ Image draw_perspective(const FieldSource& surface, const Georef& georef, const E
     any = true;
   }
   if (!any) return Image(width, height);
-  Scene scene = make_scene(field, color ? other.heights : field.heights, window, options, range);
+  Scene scene = make_scene(field, color ? other.heights : field.heights, window, options, range, context);
+  field = other = {};
   fit_scene(scene, width * kSamples, height * kSamples);
-  Canvas canvas(width * kSamples, height * kSamples);
-  draw_scene(scene, canvas, context);
-  Image image(width, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      Color sum;
-      for (int k = 0; k < kSamples * kSamples; ++k) {
-        const std::size_t i =
-            static_cast<std::size_t>(y * kSamples + k / kSamples) * static_cast<std::size_t>(canvas.width) +
-            static_cast<std::size_t>(x * kSamples + k % kSamples);
-        sum = sum + Color{canvas.colors[i][0], canvas.colors[i][1], canvas.colors[i][2]};
-      }
-      image.at(x, y) = to_rgb(1.0 / (kSamples * kSamples) * sum);
-    }
-  return image;
+  return draw_scene(scene, width, height, context);
 }
 
 }  // namespace retalho
