@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "inputs.h"
+#include "needs_in_space.h"
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/curve/bspline.h"
@@ -20,6 +21,7 @@ namespace {
 
 std::vector<CurveSpec> read_specs(const std::string& file, const Program& program) {
   if (!std::filesystem::exists(file)) throw CannotRead(fmt::format("'{}': no such file", file), file);
+  check_file_need("reading the curves of", kCurveFile, file);
   if (file.ends_with(".json")) return read_curves(file).curves;
   std::vector<CurveSpec> specs;
   if (file.ends_with(".svg")) {

@@ -10,6 +10,7 @@
 
 #include "inputs.h"
 #include "mesh_globe.h"
+#include "needs_in_space.h"
 #include "render_patches.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/patch_mesh.h"
@@ -51,6 +52,7 @@ void run(const Program& program, const Options& options) {
                                     tolerance));
           return mesh_terrain(shape, {.tolerance = tolerance}, context);
         } else if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, PatchSet>) {
+          check_patches_need("meshing", shape.patches, 0, options.model);
           const std::vector<PatchSurface> surfaces = surfaces_of(shape.patches, context);
           if (tolerance <= 0) {
             for (const Patch& patch : shape.patches)
@@ -67,6 +69,7 @@ void run(const Program& program, const Options& options) {
           tolerance = deviation;
           return triangles;
         } else {
+          check_tetraquad_need("meshing", shape, kTetrahedronMeshed, 0, options.model);
           TetraQuadMeshNotes notes;
           const TetraQuadField field(shape);
           TriangleMesh triangles = mesh_tetraquad(field, {.tolerance = options.tolerance}, &notes, context);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "inputs.h"
+#include "needs_in_space.h"
 #include "render_patches.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/patch_mesh.h"
@@ -41,6 +42,7 @@ bool ends_with(const std::string& path, const char* ending) {
 std::vector<Patch> from_mesh(const Program& program, const Options& options, Recovery recovery,
                              const Context& context) {
   note_input(options.input);
+  check_file_need("the parameters of", kMeshFile, options.input);
   const TriangleMesh mesh = read_mesh(options.input);
   ParameterizeOptions made;
   made.weights = static_cast<Weights>(choose("--parameters", options.weights, {"shape-preserving", "mean-value"}));
@@ -81,12 +83,16 @@ std::vector<Patch> make_patches(const Program& program, const Options& options, 
   const PatchOptions defaults = made;
   std::vector<Patch> patches;
   note_input(options.input);
+  double nodes = 0;
   for (const PatchSpec& spec : read_patches(options.input, placement)) {
     context.check();
     made = defaults;
     if (spec.divisions) made.divisions = *spec.divisions;
     if (options.divisions.size() == 1) made.divisions.fill(options.divisions[0]);
     if (options.divisions.size() == 3) std::copy_n(options.divisions.begin(), 3, made.divisions.begin());
+    const auto side = static_cast<double>(*std::max_element(made.divisions.begin(), made.divisions.end()));
+    nodes += (side + 1) * (side + 2) / 2;
+    check_nodes_need("making", nodes, made.recovery, options.input);
     try {
       patches.push_back(make_patch(join_sides(spec.sides, {.snap = options.snap}, spec.where), made, context));
     } catch (const BadInput& error) {
@@ -161,6 +167,15 @@ void write_outputs(const Program& program, const Options& options, const std::ve
   }
 }
 
+/// Bytes of the pictures that are asked for.
+double pixels_need(const Options& options, std::size_t patches) {
+  if (std::none_of(options.outputs.begin(), options.outputs.end(),
+                   [](const auto& out) { return ends_with(out, ".png"); }))
+    return 0;
+  const auto [width, height] = parse_size("--size", options.size);
+  return kPixelDrawn * width * height + kPatchDrawn * static_cast<double>(patches);
+}
+
 void run(const Program& program, const Options& options) {
   for (const std::string& out : options.outputs)
     check_output(program, out, {".retalho", ".ply", ".obj", ".stl", ".glb", ".png"}, {options.input});
@@ -172,6 +187,7 @@ void run(const Program& program, const Options& options) {
   const Context context = program.context();
   const Stopwatch clock;
   const std::vector<Patch> patches = make_patches(program, options, context);
+  check_patches_need("the surfaces of", patches, pixels_need(options, patches.size()), options.input);
   std::vector<PatchSurface> surfaces;
   std::size_t nodes = 0, triangles = 0, folds = 0;
   double gap = 0, jump = 0;

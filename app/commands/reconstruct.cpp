@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "inputs.h"
+#include "needs_in_space.h"
 #include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
 #include "retalho/mesh/surface_parts.h"
@@ -106,6 +107,7 @@ nlohmann::ordered_json choose_parts(const Program& program, const Options& optio
 void run_document(const Program& program, const Options& options, const Context& context) {
   note_input(options.points);
   const TetraQuad surface = read_quadrics(options.points);
+  check_tetraquad_need("meshing", surface, kTetrahedronMeshed, 0, options.points);
   const TetraQuadField field(surface);
   const TriangleMesh mesh = mesh_tetraquad(field, {.tolerance = options.tolerance}, nullptr, context);
   const MeshTopology topology = topology_of(mesh);

@@ -9,6 +9,7 @@
 
 #include "fitting.h"
 #include "inputs.h"
+#include "needs_in_space.h"
 #include "render_patches.h"
 #include "render_tetraquad.h"
 #include "retalho/core/error.h"
@@ -173,6 +174,7 @@ void run_in_space(const Program& program, const Options& options) {
     const auto [width, height] = parse_size("--size", options.size);
     layout = fit_layout(count, width, height, 1, lines);
   }
+  const double pixels = kPixelDrawn * layout.sheet_width * layout.sheet_height;
   std::vector<Panel> panels;
   for (const std::string& path : options.inputs) {
     Model model = load_any_model(path);
@@ -180,10 +182,13 @@ void run_in_space(const Program& program, const Options& options) {
     Panel panel;
     std::string words;
     if (const auto* surface = std::get_if<TetraQuad>(&model)) {
+      check_tetraquad_need("drawing", *surface, kTetrahedronDrawn, pixels, path);
       panel.picture = draw_panel(*surface, options.tetraquad, options.from, options.elevation, layout.width,
                                  layout.height, context);
       words = kind_text(*surface);
     } else if (const auto* set = std::get_if<PatchSet>(&model)) {
+      check_patches_need("drawing", set->patches, kPatchDrawn * static_cast<double>(set->patches.size()) + pixels,
+                         path);
       panel.picture =
           draw_patch_panel(*set, options.style, options.from, options.elevation, layout.width, layout.height, context);
       words = kind_text(*set);

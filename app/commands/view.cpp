@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "browser.h"
+#include "needs_in_space.h"
 #include "program.h"
 #include "retalho/core/error.h"
 #include "signals.h"
@@ -18,6 +19,7 @@ struct Options {
 
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
+  for (const std::string& file : options.files) check_shown_need(file);
   const viewer::InputFiles inputs = viewer::read_inputs(options.files, program.context());
   for (const viewer::TerrainInput& one : inputs.terrains) program.say(fmt::format("{}: {}", one.name, one.described));
   for (const viewer::TetraQuadInput& one : inputs.tetraquads)

@@ -17,11 +17,13 @@ import os
 import pathlib
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRATCH = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 UNITS = {"bytes": 1, "kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 # Work whose need is known from its input. The rest (a tolerance's vertices, triangles, lines) is for the watch.
@@ -41,6 +43,24 @@ KNOWN = {
     "render": ["render", "grid.flt", "-o", "o.png"],
     "render, model": ["render", "model.retalho", "-o", "o.png"],
     "mesh": ["mesh", "model.retalho", "-o", "o.ply", "--tolerance", "30"],
+    "fit --tiles": ["fit", "grid.flt", "-o", "o.tiles", "--tiles", "512", "--max-error", "30", "--jobs", "2"],
+    "patch": ["patch", "octant.json", "-o", "o.retalho", "--divisions", "{side}"],
+    "patch, picture": ["patch", "octant.json", "-o", "o.png", "--divisions", "{side}", "--recovery", "spr", "--size", "3000x3000"],
+    "patch of a mesh": ["patch", "disk.ply", "-o", "o.retalho"],
+    "mesh, patches": ["mesh", "patch.retalho", "-o", "o.ply", "--tolerance", "30"],
+    "render, patches": ["render", "patch.retalho", "-o", "o.png", "--size", "2000x2000"],
+    "reconstruct": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "20"],
+    "reconstruct --fit cg": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "20", "--fit", "cg"],
+    "reconstruct --fit local": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "20", "--fit", "local"],
+    "mesh, TetraQuad": ["mesh", "ball.retalho", "-o", "o.ply"],
+    "render, TetraQuad": ["render", "ball.retalho", "-o", "o.png", "--size", "400x400"],
+    "curve": ["curve", "line.json"],
+}
+# Commands that do not end by themselves: only what they say.
+SHOWN = {
+    "view": ["view", "--no-browser", "grid.flt"],
+    "view, model": ["view", "--no-browser", "model.retalho"],
+    "view, points": ["view", "--no-browser", "points.xyz"],
 }
 UNKNOWN = {
     "fit --max-error": ["fit", "grid.flt", "-o", "o.retalho", "--max-error", "0.001", "--refine", "flat"],
@@ -64,17 +84,37 @@ def write_points(folder, count):
     (folder / "points.xyz").write_text("\n".join(lines) + "\n")
 
 
+def write_ball(folder, count):
+    """Points of a sphere with their normals, on a spiral."""
+    lines = []
+    for i in range(count):
+        z, a = 1 - (2 * i + 1) / count, i * 2.399963229728653
+        r = math.sqrt(1 - z * z)
+        lines.append(f"{r * math.cos(a):.5f} {r * math.sin(a):.5f} {z:.5f} " * 2)
+    (folder / "ball.xyz").write_text("\n".join(lines) + "\n")
+
+
 class Stage:
     def __init__(self, options, folder):
         self.program, self.folder, self.size = options.program, folder, options.size
         self.failures = []
         write_grid(folder, self.size)
         write_points(folder, self.size * self.size // 8)
-        self.run(["fit", "grid.flt", "-o", "model.retalho", "--vertices", str(self.size * self.size // 12), "--refine", "flat"])
+        write_ball(folder, 20 * self.size)
+        shutil.copy(ROOT / "examples/patches/octant.json", folder)
+        points = [[k, round(math.sin(k), 6)] for k in range(20 * self.size)]
+        (folder / "line.json").write_text(json.dumps({"curves": [{"kind": "polyline", "points": points}]}))
+        for words in [["fit", "grid.flt", "-o", "model.retalho", "--vertices", str(self.size * self.size // 12), "--refine", "flat"],
+                      ["patch", "octant.json", "-o", "patch.retalho", "--divisions", "{side}"],
+                      ["mesh", "patch.retalho", "-o", "disk.ply", "--tolerance", "30"],
+                      ["reconstruct", "ball.xyz", "-o", "ball.retalho", "--fit", "local", "--resolution", "40"]]:
+            code, said, _ = self.run(words)
+            if code != 0:
+                raise SystemExit(f"{words}: exit {code}: {said}")
 
     def words(self, words):
         cells = self.size * self.size
-        return [w.format(many=cells // 4, few=cells // 30) for w in words]
+        return [w.format(many=cells // 4, few=cells // 30, side=self.size // 3) for w in words]
 
     def run(self, words, *more):
         """Exit code, what it said, and the most that it held, in bytes."""
@@ -93,8 +133,11 @@ class Stage:
         left = [f.name for f in self.folder.iterdir() if f.name.startswith((".", "o."))]
         if left:
             self.fail(name, f"left {left}")
-        for f in left:
-            (self.folder / f).unlink()
+        self.remove()
+
+    def remove(self):
+        for f in [f for f in self.folder.iterdir() if f.name.startswith((".", "o."))]:
+            shutil.rmtree(f) if f.is_dir() else f.unlink()
 
     def need_of(self, name, words):
         """What the command says that it needs, when it is given next to nothing."""
@@ -134,15 +177,13 @@ class Stage:
             self.fail(name, f"with the {need / 1e6:.0f} MB that it asks for: exit {code}: {said[-200:]}")
         if peak > 1.2 * limit:
             self.fail(name, f"held {peak / 1e6:.0f} MB under a limit of {limit / 1e6:.0f} MB")
-        for f in self.folder.glob("o.*"):
-            f.unlink()
+        self.remove()
         return need, peak
 
     def unknown(self, name, words):
         """Stopped on the way, within 1.2 times the limit."""
         code, said, peak = self.run(words)
-        for f in self.folder.glob("o.*"):
-            f.unlink()
+        self.remove()
         if code != 0:
             self.fail(name, f"exit {code}: {said[-200:]}")
         limit = int(0.75 * peak)
@@ -216,13 +257,16 @@ def main():
             if found:
                 worst = max(worst, found[1] / found[0])
                 print(f"{name}: says {found[0] / 1e6:.0f} MB, held {found[1] / 1e6:.0f} MB ({found[1] / found[0]:.2f})")
+        for name, words in SHOWN.items():
+            need = stage.need_of(name, words)
+            print(f"{name}: says {(need or 0) / 1e6:.0f} MB")
         for name, words in UNKNOWN.items():
             limit, held = stage.unknown(name, words)
             worst = max(worst, held / limit)
             print(f"{name}: stopped at {held / 1e6:.0f} MB by a limit of {limit / 1e6:.0f} MB ({held / limit:.2f})")
     for failure in stage.failures:
         print("FAILED", failure)
-    print(f"{len(KNOWN) + len(UNKNOWN)} commands; {len(stage.failures)} failures")
+    print(f"{len(KNOWN) + len(SHOWN) + len(UNKNOWN)} commands; {len(stage.failures)} failures")
     if options.kind == "value":
         print(json.dumps({"value": round(worst, 2)}))
     return 1 if stage.failures else 0
