@@ -6,6 +6,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/level/clip.h"
+#include "retalho/level/conic_cut.h"
 #include "retalho/level/contour.h"
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/lines.h"
@@ -17,8 +18,6 @@ ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const 
   check_levels(levels);
   if (terrain.kind == SurfaceKind::clough_tocher)
     throw BadInput("level lines of a Clough-Tocher surface are cubics, not conics: take a Powell-Sabin surface");
-  if (has_voids(terrain.grid))
-    throw BadInput("conics of a model whose grid has cells without data: lines end on cells there, take polylines");
   const EdgeTable edges = build_edges(terrain.tin);
   const double per_unit = terrain_quanta(terrain, edges, context);
   const FixedLevels fixed(levels, per_unit);
@@ -44,6 +43,7 @@ ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const 
     }
     if (!out.curve.empty()) set.lines.push_back(std::move(out));
   }
+  if (has_voids(terrain.grid)) set.lines = cut_conics(std::move(set.lines), terrain.grid, context);
   return set;
 }
 

@@ -19,16 +19,17 @@ struct ConicLine {
 
 struct ConicSet {
   std::vector<double> levels;
-  std::vector<ConicLine> lines;  ///< by level, then by where they start; one for each line of trace_contours
-  double height_quantum = 0;     ///< heights were rounded to multiples of this before tracing
+  std::vector<ConicLine>
+      lines;  ///< by level, then by where they start; one for each line of trace_contours (with voids: but for touches)
+  double height_quantum = 0;  ///< heights were rounded to multiples of this before tracing
 };
 
 /// The lines of all `levels` (ascending, different, finite) of a Powell-Sabin surface. The topology is decided as in
 /// trace_contours; each segment is the level line of one piece of the rounded surface, to the rounding of doubles: none
 /// turns by more than 60 degrees, none lies in two pieces. Lines of a linear surface are segments with straight control
-/// points. Throws BadInput: a Clough-Tocher surface (its lines are cubics), a grid that has cells without data, levels
-/// as in trace_contours. Cost: tracing as trace_contours does, and 108 bytes a segment. The same bytes from any
-/// number of threads.
+/// points. Where the model's grid has no data the lines end, on the sides of cells. Throws BadInput: a Clough-Tocher
+/// surface (its lines are cubics), levels as in trace_contours. Cost: tracing as trace_contours does, and 108 bytes a
+/// segment. The same bytes from any number of threads.
 ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const Context& context = {});
 
 }  // namespace retalho
