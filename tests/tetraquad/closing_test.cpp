@@ -81,5 +81,21 @@ TEST(Closing, AnOpenScanOfAClosedShape) {
   EXPECT_EQ(topology_of(mesh_tetraquad(TetraQuadField(surface))).open_edges, 0U);
 }
 
+TEST(Closing, ScansOfShapesThatAreOpen) {
+  // A leg cut off at both ends, with holes and normals turned the wrong way; a house without a floor.
+  for (const std::string name : {"points/scanned_leg.ply", "points/building.ply"}) {
+    RETALHO_DATA_FILE(points, name);
+    TetraQuadFitReport report;
+    TetraQuadFitOptions options{.resolution = 16, .solver = TetraQuadSolver::cg};
+    const PointCloud cloud = read_points(points);
+    fit_tetraquad(cloud, options, &report);
+    EXPECT_GT(report.open_faces, 100U) << name;
+    options.closed = true;
+    const TetraQuad surface = fit_tetraquad(cloud, options, &report);
+    EXPECT_EQ(report.open_faces, 0U) << name;
+    EXPECT_EQ(topology_of(mesh_tetraquad(TetraQuadField(surface))).open_edges, 0U) << name;
+  }
+}
+
 }  // namespace
 }  // namespace retalho
