@@ -99,6 +99,7 @@ TEST(SurfaceParts, LeaveTrianglesAndModelsWithoutOpeningWhatStays) {
 TEST(SurfaceParts, ThatShareATetrahedronStayTogetherInModels) {
   // Two sheets of one quadric through the same tetrahedron: (z - 0.4)(z - 0.6) = 0.
   std::vector<TetPlace> places;
+  places.reserve(6);
   for (int t = 0; t < tets_of_cube(TetSplit::kuhn); ++t) places.push_back({{0, 0, 0}, static_cast<std::uint8_t>(t)});
   const Made made(quasi_interpolant(make_tet_mesh({0, 0, 0}, 1, TetSplit::kuhn, places), [](Vec3 p) {
     Jet3 jet;
