@@ -262,38 +262,25 @@ Values run_poisson() {
   return values;
 }
 
-const std::vector<std::string> kClosedScans = {"bunny.ply",      "hand.xyz",     "elephant.xyz",           "oni.xyz",
-                                               "rocker_arm.ply", "gargoyle.ply", "armadillo_nonormals.ply"};
-
-/// Scans by `closed`: open edges of all together, on a grid or (0) an adaptive mesh. Oni's 1,435 points are too few for
+/// Scans by `closed`: open edges of all together, on grids or (0) an adaptive mesh. Oni's 1,435 points are too few for
 /// a grid of 48.
-Values run_closed(const std::vector<std::string>& names, int resolution) {
+Values run_closed(const std::vector<int>& resolutions, const std::vector<std::string>& names) {
   Values values;
   for (const std::string& name : names) {
-    if (name == "oni.xyz" && resolution == 48) continue;
     PointCloud cloud = read_points(data(name));
     if (cloud.normals.empty()) cloud.normals = estimate_normals(cloud.positions, {}, nullptr, one_thread());
-    const TetraQuadFitOptions options = {.resolution = std::max(2, resolution),
-                                         .smoothness = resolution == 0 ? 0.1 : 1.0,
-                                         .closed = true,
-                                         .solver = TetraQuadSolver::cg};
-    const TetraQuad surface =
-        resolution == 0 ? fit_tetraquad_adaptive(cloud, {.coefficients = 29900}, options, nullptr, one_thread())
-                        : fit_tetraquad(cloud, options, nullptr, one_thread());
-    const TriangleMesh mesh = mesh_tetraquad(TetraQuadField(surface), {}, nullptr, one_thread());
-    values["open"] += static_cast<double>(topology_of(mesh).open_edges);
-    values["scans"] += 1;
-  }
-  return values;
-}
-
-/// Scans of shapes that are open, closed all the same.
-Values run_closed_others() {
-  Values values;
-  for (const int resolution : {24, 48, 0}) {
-    Values some = run_closed({"scanned_leg.ply", "building.ply"}, resolution);
-    values["open"] += some["open"];
-    values["scans"] += some["scans"];
+    for (const int resolution : resolutions) {
+      if (name == "oni.xyz" && resolution == 48) continue;
+      const TetraQuadFitOptions options = {.resolution = std::max(2, resolution),
+                                           .smoothness = resolution == 0 ? 0.1 : 1.0,
+                                           .closed = true,
+                                           .solver = TetraQuadSolver::cg};
+      const TetraQuad surface =
+          resolution == 0 ? fit_tetraquad_adaptive(cloud, {.coefficients = 29900}, options, nullptr, one_thread())
+                          : fit_tetraquad(cloud, options, nullptr, one_thread());
+      values["open"] += static_cast<double>(topology_of(mesh_tetraquad(TetraQuadField(surface))).open_edges);
+      values["scans"] += 1;
+    }
   }
   return values;
 }
@@ -309,10 +296,12 @@ Values run_ten_million() {
 }
 
 Values run_case(const std::string& whole_name) {
-  if (whole_name == "closed24") return run_closed(kClosedScans, 24);
-  if (whole_name == "closed48") return run_closed(kClosedScans, 48);
-  if (whole_name == "closed-adaptive") return run_closed(kClosedScans, 0);
-  if (whole_name == "closed-others") return run_closed_others();
+  const std::vector<std::string> closed = {"bunny.ply",      "hand.xyz",     "elephant.xyz",           "oni.xyz",
+                                           "rocker_arm.ply", "gargoyle.ply", "armadillo_nonormals.ply"};
+  if (whole_name == "closed24" || whole_name == "closed48")
+    return run_closed({whole_name == "closed24" ? 24 : 48}, closed);
+  if (whole_name == "closed-adaptive") return run_closed({0}, closed);
+  if (whole_name == "closed-others") return run_closed({24, 48, 0}, {"scanned_leg.ply", "building.ply"});
   if (whole_name == "tenmillion") return run_ten_million();
   if (whole_name == "bumps") return run_bumps();
   if (whole_name == "poisson") return run_poisson();
