@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "checks.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 
@@ -38,7 +39,7 @@ const std::string& noted_input() {
 }
 
 void add_grid_flags(CLI::App& command, GridFlags& flags) {
-  command.add_option("--band", flags.band, "Band of the raster, from 1")->type_name("N")->check(CLI::PositiveNumber);
+  command.add_option("--band", flags.band, "Band of the raster, from 1")->type_name("N")->check(above_zero());
   command.add_option("--nodata", flags.nodata, "Heights equal to this are void too")->type_name("V");
 }
 

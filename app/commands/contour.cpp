@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "checks.h"
 #include "contour_compare.h"
 #include "contour_conics.h"
 #include "contour_map.h"
@@ -276,9 +277,7 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("");
   command->add_option("-o,--output", options->output, ".gpkg, .geojson, .shp or .dxf; .svg or .pdf: a map sheet")
       ->type_name("FILE");
-  command->add_option("--interval", options->interval, "Height between levels")
-      ->type_name("D")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--interval", options->interval, "Height between levels")->type_name("D")->check(above_zero());
   command->add_option("--base", options->base, "A height that is a level, and an index contour (default 0)")
       ->type_name("B");
   command->add_option("--levels", options->levels, "The levels themselves")->type_name("A,B,C");
@@ -288,7 +287,7 @@ void add_contour(CLI::App& root, Program& program) {
           "How far lines may lie from the true level lines (default a tenth of a cell; metres where the CRS is "
           "geographic)")
       ->type_name("T")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command
       ->add_option("--surface", options->surface.kind,
                    "bicubic (default for grids), linear, powell-sabin or clough-tocher (default for points)")

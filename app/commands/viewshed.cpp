@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "checks.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
@@ -287,7 +288,7 @@ void add_viewshed(CLI::App& root, Program& program) {
   command->add_option("--target-height", options->target_height, "Of what is looked at, above the ground (default 0)");
   command
       ->add_option("--radius", options->radius, "Largest distance (default: none; metres where the CRS is geographic)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more());
   command->add_option("--what", options->what,
                       "visible (1 or 0, default), count (observers that see the cell) or height (needed to be seen)");
   command->add_option("--azimuth", options->azimuth, "Horizontal field, degrees clockwise from north")
@@ -304,8 +305,7 @@ void add_viewshed(CLI::App& root, Program& program) {
                    "Only the sight line from the observer to here: on standard output, and with -o a profile as .svg, "
                    ".pdf or .png")
       ->type_name("X,Y");
-  command->add_option("--frequency", options->frequency, "With --to: Hz, for the Fresnel zone")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--frequency", options->frequency, "With --to: Hz, for the Fresnel zone")->check(zero_or_more());
   command->add_flag("--intervisibility", options->intervisibility, "For each cell the number of cells that it sees");
   command->add_flag(
       "--exact", options->exact,
@@ -315,7 +315,7 @@ void add_viewshed(CLI::App& root, Program& program) {
           "--stride", options->stride,
           "With --intervisibility: exact counts from every N-th cell of every N-th row; cells N times as large")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--directions", options->directions, "Of --intervisibility (default 180)")
       ->check(CLI::Range(4, 3600));
   add_grid_flags(*command, options->grid);

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 
+import broken
 import checks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -77,7 +78,9 @@ FILES = {
 MADE = [["fit", "g.asc", "-o", "m.retalho", "--max-error", "1", "--refine", "flat"], ["fit", "p.xyz", "-o", "points.retalho"],
         ["fit", "utm31.vrt", "-o", "utm.retalho", "--max-error", "1", "--refine", "flat"],
         ["patch", "good.json", "-o", "patch.retalho", "--divisions", "4"],
-        ["reconstruct", str(ROOT / "examples/tetraquads/sphere.json"), "-o", "ball.retalho"]]
+        ["reconstruct", str(ROOT / "examples/tetraquads/sphere.json"), "-o", "ball.retalho"],
+        ["fit", "g.asc", "-o", "c.retalho", "--max-error", "1", "--format", "compact"], ["fit", "g.asc", "-o", "ps.retalho", "--max-error", "1", "--surface", "powell-sabin", "--refine", "flat"],
+        ["fit", "g.asc", "-o", "tiled", "--tiles", "16", "--max-error", "1"]]
 
 ROWS = [
     # What any command says.
@@ -156,6 +159,19 @@ ROWS = [
     ("curve closed.json", 3, "expected true or false, got"), ("curve bad.svg", 4, "not an SVG file"), ("curve none.svg", 3, "no path, polyline, polygon or line in the SVG file"),
     ("curve letter.svg", 3, "is no path command"), ("curve start.svg", 3, "a path begins with M"), ("curve flag.svg", 3, "expected the flag 0 or 1"),
     ("curve c.json -o o.svg --window 3,3,1,1", 2, "xmin < xmax and ymin < ymax are needed"),
+    ("contour g.asc -o o.gpkg --interval -5", 2, "--interval: '-5' is not a number above 0"), ("viewshed g.asc -o o.tif --radius -5", 2, "'-5' is not a number of 0 or more"), ("info g.asc --band 0", 2, "'0' is not a number above 0"),
+    ("contour g.asc -o o.xyz --interval 5", 2, "must end in"), ("contour g.asc -o o.gpkg --interval 5 --conics", 2, "--conics writes curves"), ("contour g.asc -o o.json --interval 5 --conics --bands", 2, "--conics gives exact lines"),
+    ("contour g.asc -o o.json --interval 5 --conics", 2, "--conics is for Powell-Sabin surfaces"),
+    ("fit g.asc -o o.retalho --max-error 1 --refine flat --effort best", 2, "--effort moves the vertices of a surface"), 
+    ("fit g.asc -o o.retalho --max-error 0 --refine surface", 2, "takes a --max-error over 0"), ("fit g.asc -o o --tiles 3 --max-error 1", 2, "cells a side, not 3"), ("fit g.asc -o o --tiles 16 --vertices 3", 2, "the corners and outlines of the tiles alone are"),
+    ("fit good.pgm -o o --tiles 16 --max-error 1", 3, "no part of an ASCII PGM can be read by itself"),
+    ("viewshed void.asc -o o.tif --observer 1030,2030", 3, "holds no data: move the observer to a valid cell"), ("viewshed void.asc --observer 1030,2030 --to 1050,2050", 3, "holds no data"),
+    ("viewshed g.asc -o o.tif --intervisibility --stride 0", 2, "'0' is not a number above 0"), ("viewshed m.retalho -o o.tif --exact --observer 1,2", 3, "the model has no data at the"),
+    ("render g.asc g.asc g.asc -o o.png --size 16x16", 2, "pictures do not fit on"),
+    ("reconstruct p.xyz -o o.ply --max-error 1 --quantile 0", 2, "the share of the points that must be within"), ("patch good.json -o o.png --divisions 0", 2, "divisions of a side: 1 to 10000 are possible"), ("patch good.json -o o.png --snap -1", 2, "the snapping distance must be 0 or more"),
+    ("curve c.json -o o.svg --cut 1 0", 2, "the part from 1 to 0 is empty"), ("curve c.json -o o.xyz", 2, "must end in"),
+    ("fit g.asc -o .. --max-error 1", 2, "must end in .retalho"), ("info", 2, "FILE is required"),
+    ("contour utm.retalho -o o.gpkg --levels 5 --area 1,1,0,0", 2, "has no option"), ("compare g.asc utm.retalho", 3, "no valid cell of the grid lies on the model"),
     # readers
     ("info folder", 4, "is a folder: give the name of a raster file"), ("info turned.vrt", 3, "the grid is rotated or sheared"), ("info quarter.vrt", 3, "the grid is rotated by a quarter turn"), ("info thin.vrt", 3, "the cells have no size"),
     ("info complex.vrt", 3, "holds complex numbers"), ("info scale.vrt", 3, "make no heights"), ("info bandless.vrt", 4, "bandless.vrt"), ("info g.asc --band 2", 3, "it has bands 1 to 1"), ("info good.pgm --band 2", 3, "a PGM has one band"),
@@ -180,6 +196,7 @@ def main():
             (stock / name).write_bytes(text.encode("latin-1"))
         for words in MADE:
             subprocess.run([program, *words, "-q"], cwd=stock, check=True, stdout=subprocess.DEVNULL)
+        rows = ROWS + broken.make(stock)
         before = sorted(p.name for p in stock.iterdir())
 
         def look(row):
@@ -189,12 +206,12 @@ def main():
                 failures.append(f"{words}: exit {done.returncode}, not {code} with '{part}': {done.stderr.strip()[-300:]}")
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(look, ROWS))
+            list(pool.map(look, rows))
         left = sorted(set(p.name for p in stock.iterdir()) - set(before) - {"maps", "d"})
         if left:
             failures.append(f"left behind: {left}")
         shutil.rmtree(stock / "d", ignore_errors=True)
-    return checks.verdict(f"{len(ROWS)} messages", failures)
+    return checks.verdict(f"{len(rows)} messages", failures)
 
 
 if __name__ == "__main__":
