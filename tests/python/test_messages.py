@@ -83,7 +83,12 @@ ROWS: list[tuple[str, Callable[[], object]]] = [
     ("samples must be 'parameter' or 'arc-length', not 'even'", lambda: retalho.PatchSet([CURVES], samples="even")),
     ("patch 0 has 2 sides: a patch has three", lambda: retalho.PatchSet([CURVES[:2]])),
     ("parameters must be 'mean-value' or 'shape-preserving', not 'even'", lambda: retalho.PatchSet.from_mesh(retalho.Mesh(POINTS, np.array([[0, 1, 2]])), parameters="even")),
+    ("the mesh has no triangles", lambda: retalho.PatchSet.from_mesh(retalho.Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)))),
     # TetraQuads
+    ("divisions of a tetrahedron's edge: 1 to 16, or 0", lambda: ball().mesh(divisions=17)),
+    ("there is no point with finite coordinates to make a surface of", lambda: retalho.TetraQuad.fit(np.full((5, 3), NAN), np.ones((5, 3)))),
+    ("coordinates beyond 1e150: scale them", lambda: retalho.TetraQuad.fit(1e160 * POINTS, np.ones((5, 3)))),
+    ("the points have no normals: estimate them first", lambda: retalho.TetraQuad.fit(POINTS, np.zeros((5, 3)))),
     ("split must be 'five' or 'kuhn', not 'six'", lambda: retalho.TetraQuad.fit(POINTS, split="six")),
     ("normals must have the shape of points, (5, 3), not (4, 3)", lambda: retalho.TetraQuad.fit(POINTS, normals=np.ones((4, 3)))),
     ("origins and directions must have the same shape (or one of them (3,))", lambda: ball().cast(np.zeros((2, 3)), np.zeros((4, 3)))),

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <exception>
+#include <functional>
+#include <initializer_list>
 #include <string>
 
 namespace retalho::test {
@@ -28,6 +30,18 @@ std::string words_of(const Action& action) {
 inline testing::AssertionResult holds(const std::string& text, const std::string& part) {
   if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "'" << text << "' does not hold '" << part << "'";
+}
+
+/// A call that is refused, and a part of what is said.
+struct Refused {
+  const char* words;
+  std::function<void()> call;
+};
+
+/// Each call throws an `Expected` that says so.
+template <class Expected>
+void expect_refused(std::initializer_list<Refused> rows) {
+  for (const Refused& row : rows) EXPECT_TRUE(holds(words_of<Expected>(row.call), row.words));
 }
 
 }  // namespace retalho::test

@@ -1,0 +1,31 @@
+// What the room's pictures refuse, in its own words.
+#include <gtest/gtest.h>
+
+#include "retalho/core/error.h"
+#include "retalho/render/patch_picture.h"
+#include "retalho/render/tetraquad_picture.h"
+#include "support/errors.h"
+#include "support/sample_tetraquad.h"
+
+namespace retalho::test {
+namespace {
+
+TEST(RenderMessages, AreThese) {
+  const TetraQuad surface = sample_tetraquad();
+  const TetraQuadField field(surface);
+  const TetraQuadRays rays(field, 6);
+  const auto draw = [&](int side, const TetraQuadPictureOptions& options) {
+    draw_tetraquad(field, rays, side, side, options);
+  };
+  expect_refused<UsageError>({
+      {"a picture has 16 to 20000 pixels a side", [] { draw_patches({}, {}, {.width = 5}); }},
+      {"there is no patch to draw", [] { draw_patches({}, {}); }},
+      {"a picture of 1 to 20000 pixels a side", [&] { draw(0, {}); }},
+      {"a field of view of 1 to 120 degrees", [&] { draw(9, {.field_of_view = 0}); }},
+      {"1 to 8 samples a pixel's side", [&] { draw(9, {.samples = 9}); }},
+      {"the largest jump must be above 0", [&] { draw(9, {.largest_jump = 0}); }},
+  });
+}
+
+}  // namespace
+}  // namespace retalho::test
