@@ -20,13 +20,13 @@ TEST(LevelMessages, AreThese) {
   });
   const Expression f = Expression::parse("x*x + y*y - 1");
   expect_refused<UsageError>({
-      {"the box 1, 0, 1, 0 is empty",
+      {"the box 1, 1, 0, 0 is empty",
        [&] {
          trace_implicit(f, {1, 1, 0, 0});
        }},
       {"depth 15: 1 to 14 is possible",
        [&] {
-         trace_implicit(f, {-2, 2, -2, 2}, {.depth = 15});
+         trace_implicit(f, {-2, -2, 2, 2}, {.depth = 15});
        }},
   });
 }
