@@ -68,6 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (!word.empty()) words.push_back(word);
   std::vector<const char*> argv;
+  argv.reserve(words.size() + 1);
   for (const std::string& w : words) argv.push_back(w.c_str());
   argv.push_back(nullptr);
   fuzz::refuse_or([&] { app::parse_words(commands(), static_cast<int>(words.size()), argv.data()); });
