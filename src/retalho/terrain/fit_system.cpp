@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "retalho/terrain/crease_unknowns.h"
+
 namespace retalho {
 namespace {
 
@@ -10,6 +12,20 @@ constexpr double kRidge = 1e-11;      // of the diagonal, towards the start: for
 
 template <std::size_t N>
 using Block = std::array<double, N * N>;
+
+/// Adds a little to a diagonal block, and to the right-hand side what keeps `start` where nothing else speaks. Returns
+/// what was added.
+template <std::size_t N>
+std::array<double, N> add_ridge(Block<N>& block, const double* start, double* right) {
+  std::array<double, N> ridge{};
+  for (std::size_t i = 0; i < N; ++i) {
+    double& entry = block[i * N + i];
+    ridge[i] = entry > 0 ? kRidge * entry : 1;
+    entry += ridge[i];
+    right[i] += ridge[i] * start[i];
+  }
+  return ridge;
+}
 
 /// Blocks of N unknowns a vertex: 1 or 3.
 template <std::size_t N>
@@ -25,15 +41,8 @@ class BlockMatrix {
 
   /// Makes directions without data stay at `start`.
   void add_ridge(const std::vector<double>& start) {
-    for (std::uint32_t v = 0; v < pattern_.vertices(); ++v) {
-      Block<N>& d = blocks_[pattern_.slot(v, v)];
-      for (std::size_t i = 0; i < N; ++i) {
-        double& entry = d[i * N + i];
-        const double ridge = entry > 0 ? kRidge * entry : 1;
-        entry += ridge;
-        right_[v * N + i] += ridge * start[v * N + i];
-      }
-    }
+    for (std::uint32_t v = 0; v < pattern_.vertices(); ++v)
+      retalho::add_ridge<N>(blocks_[pattern_.slot(v, v)], &start[v * N], &right_[v * N]);
   }
 
   const Block<N>& block(std::uint32_t slot) const { return blocks_[slot]; }
@@ -91,31 +100,31 @@ Block<1> inverse(const Block<1>& m) {
   return {1 / m[0]};
 }
 
-/// The plain problem.
-template <std::size_t N>
-int solve_blocks(const FitPattern& pattern, const BlockMatrix<N>& matrix, std::vector<double>& x,
-                 const FitSolveOptions& options, const Context& context) {
-  std::vector<Block<N>> jacobi(pattern.vertices());
+/// Preconditioned by the diagonal blocks; what is pinned stays.
+template <std::size_t N, class Multiply>
+int solve_blocks(std::vector<Block<N>> jacobi, const Multiply& multiply, const std::vector<double>& right,
+                 std::vector<double>& x, const CgLimits& limits, std::span<const std::uint8_t> pinned,
+                 const Context& context) {
   const auto is_held = [&](std::size_t v, std::size_t i) {
-    return !options.pinned.empty() && (options.pinned[v] & (i == 0 ? kHeldHeight : kHeldGradient)) != 0;
+    return !pinned.empty() && (pinned[v] & (i == 0 ? kHeldHeight : kHeldGradient)) != 0;
   };
-  for (std::uint32_t v = 0; v < pattern.vertices(); ++v) {
-    Block<N> d = matrix.block(pattern.slot(v, v));
+  for (std::size_t v = 0; v < jacobi.size(); ++v) {
+    Block<N>& d = jacobi[v];
     for (std::size_t i = 0; i < N; ++i) {  // the block of what is free
       if (!is_held(v, i)) continue;
       for (std::size_t j = 0; j < N; ++j) d[i * N + j] = d[j * N + i] = 0;
       d[i * N + i] = 1;
     }
-    jacobi[v] = inverse(d);
+    d = inverse(d);
   }
   const auto hold = [&](std::vector<double>& y) {
-    if (options.pinned.empty()) return;
-    for (std::size_t v = 0; v < pattern.vertices(); ++v)
+    if (pinned.empty()) return;
+    for (std::size_t v = 0; v < jacobi.size(); ++v)
       for (std::size_t i = 0; i < N; ++i)
         if (is_held(v, i)) y[v * N + i] = 0;
   };
   const auto precondition = [&](const std::vector<double>& r, std::vector<double>& y) {
-    parallel_chunks(pattern.vertices(), kGrain * 4, context, [&](std::size_t begin, std::size_t end) {
+    parallel_chunks(jacobi.size(), kGrain * 4, context, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         for (std::size_t i = 0; i < N; ++i) {
           double sum = 0;
@@ -125,10 +134,19 @@ int solve_blocks(const FitPattern& pattern, const BlockMatrix<N>& matrix, std::v
     });
     hold(y);
   };
+  return conjugate_gradients(multiply, precondition, right, x, limits, context);
+}
+
+/// The plain problem.
+template <std::size_t N>
+int solve_plain(const FitPattern& pattern, const BlockMatrix<N>& matrix, std::vector<double>& x,
+                const FitSolveOptions& options, const Context& context) {
+  std::vector<Block<N>> diagonal(pattern.vertices());
+  for (std::uint32_t v = 0; v < pattern.vertices(); ++v) diagonal[v] = matrix.block(pattern.slot(v, v));
   const auto multiply = [&](const std::vector<double>& in, std::vector<double>& out) {
     matrix.multiply(in, out, context);
   };
-  return conjugate_gradients(multiply, precondition, matrix.right(), x, options.limits, context);
+  return solve_blocks<N>(std::move(diagonal), multiply, matrix.right(), x, options.limits, options.pinned, context);
 }
 
 /// Gradients as a linear function of the heights: u = P z.
@@ -274,7 +292,7 @@ int solve_fit(SurfaceKind kind, TriangleList triangles, std::span<const FitEleme
     for (std::size_t v = 0; v < n; ++v) x[v] = data[v].x;
     BlockMatrix<1> matrix(pattern, triangles, elements, context);
     matrix.add_ridge(x);
-    iterations = solve_blocks<1>(pattern, matrix, x, options, context);
+    iterations = solve_plain<1>(pattern, matrix, x, options, context);
     for (std::size_t v = 0; v < n; ++v) data[v].x = x[v];
     return iterations;
   }
@@ -295,9 +313,40 @@ int solve_fit(SurfaceKind kind, TriangleList triangles, std::span<const FitEleme
       x[3 * v + 2] = data[v].z;
     }
     matrix.add_ridge(x);
-    iterations = solve_blocks<3>(pattern, matrix, x, options, context);
+    iterations = solve_plain<3>(pattern, matrix, x, options, context);
   }
   for (std::size_t v = 0; v < n; ++v) data[v] = {x[3 * v], x[3 * v + 1], x[3 * v + 2]};
+  return iterations;
+}
+
+int solve_creased(const CreasedUnknowns& unknowns, std::span<const FitElement> elements, std::vector<Vec3>& data,
+                  const FitSolveOptions& options, const Context& context) {
+  const std::size_t n = unknowns.nodes();
+  const FitPattern pattern(unknowns.triangles(), unknowns.corners(), context);
+  const BlockMatrix<3> matrix(pattern, unknowns.triangles(), elements, context);
+  std::vector<double> x(3 * n), u(3 * unknowns.corners()), au(u.size()), right(x.size()), ridge(x.size());
+  std::vector<std::uint8_t> pinned(n, 0);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    x[3 * k] = data[k].x;
+    x[3 * k + 1] = data[k].y;
+    x[3 * k + 2] = data[k].z;
+    if (!options.pinned.empty() && unknowns.vertex(k) != kNone) pinned[k] = options.pinned[unknowns.vertex(k)];
+    if (k >= unknowns.vertices()) pinned[k] |= kHeldHeight;
+  }
+  unknowns.gather(matrix.right(), right, context);
+  std::vector<Block<3>> diagonal = unknowns.diagonal(elements);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto added = add_ridge<3>(diagonal[k], &x[3 * k], &right[3 * k]);
+    std::copy(added.begin(), added.end(), &ridge[3 * k]);
+  }
+  const auto multiply = [&](const std::vector<double>& in, std::vector<double>& out) {
+    unknowns.expand(in, u, context);
+    matrix.multiply(u, au, context);
+    unknowns.gather(au, out, context);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += ridge[k] * in[k];
+  };
+  const int iterations = solve_blocks<3>(std::move(diagonal), multiply, right, x, options.limits, pinned, context);
+  for (std::size_t k = 0; k < n; ++k) data[k] = {x[3 * k], x[3 * k + 1], x[3 * k + 2]};
   return iterations;
 }
 

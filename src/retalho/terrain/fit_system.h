@@ -34,10 +34,18 @@ struct FitSolveOptions {
   std::span<const std::uint8_t> pinned{};  ///< of each vertex: what stays of it (kHeldHeight, kHeldGradient)
 };
 
+class CreasedUnknowns;
+
 /// Minimises the sum of the elements' costs over heights (and gradients) of all vertices, starting from `data`.
 /// Vertices that no cell speaks for stay. Returns the iterations. `points`: the vertices in units of the fit.
 int solve_fit(SurfaceKind kind, TriangleList triangles, std::span<const FitElement> elements,
               std::span<const Vec2> points, std::vector<Vec3>& data, const FitSolveOptions& options,
               const Context& context);
+
+/// The same for a smooth surface with creases, over the heights of the vertices and the gradients of the sectors: one
+/// entry of `data` a node, of which later sectors' heights stay. `options.pinned`: one mark a vertex, for all its
+/// sectors. Not for heights_only.
+int solve_creased(const CreasedUnknowns& unknowns, std::span<const FitElement> elements, std::vector<Vec3>& data,
+                  const FitSolveOptions& options, const Context& context);
 
 }  // namespace retalho

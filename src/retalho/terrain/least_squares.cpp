@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
+#include "retalho/terrain/crease_unknowns.h"
+#include "retalho/terrain/creases.h"
 #include "retalho/terrain/fit_system.h"
 #include "retalho/terrain/gradients.h"
 
@@ -22,6 +25,8 @@ void check(const Terrain& terrain, const Raster& raster, const LeastSquaresOptio
         fmt::format("{} marks of held vertices for {} vertices", options.held.size(), terrain.tin.vertex_count()));
   if (!options.held.empty() && options.heights_only)
     throw UsageError("gradients that follow from the heights cannot be held: heights_only takes no held vertices");
+  if (!terrain.creases.empty() && options.heights_only)
+    throw UsageError("a surface with creases has gradients of its own on each side: heights_only takes none");
   const GridDomain& grid = terrain.grid;
   if (grid.columns != raster.columns || grid.rows != raster.rows || grid.cell_width != raster.cell_width ||
       grid.cell_height != raster.cell_height)
@@ -38,12 +43,15 @@ class Fit {
     const Tin& tin = terrain.tin;
     at_.resize(tin.vertex_count());
     points_.resize(tin.vertex_count());
-    data_.resize(tin.vertex_count());
+    data_.resize(std::max(tin.vertex_count(), terrain.gradients.size()));  // with creases: one a sector
     for (std::size_t v = 0; v < at_.size(); ++v) {
       at_[v] = cell_coordinates(tin.points[v], raster);
       points_[v] = grid_.place(at_[v]);
-      const Vec2 g = terrain.gradients.empty() ? Vec2{} : terrain.gradients[v] * grid_.unit;
-      data_[v] = {tin.heights[v] - grid_.reference, g.x, g.y};
+      data_[v].x = tin.heights[v] - grid_.reference;
+    }
+    for (std::size_t n = 0; n < terrain.gradients.size(); ++n) {
+      data_[n].y = terrain.gradients[n].x * grid_.unit;
+      data_[n].z = terrain.gradients[n].y * grid_.unit;
     }
     if (terrain.kind != SurfaceKind::linear) {
       weights_.slope = options.slope_weight;
@@ -69,7 +77,11 @@ class Fit {
     std::vector<std::uint8_t> pinned(options_.held.begin(), options_.held.end());
     for (std::uint8_t& mark : pinned) mark = mark != 0 ? kHeldHeight | kHeldGradient : 0;
     solve.pinned = pinned;
-    const int iterations = solve_fit(terrain_.kind, tin.triangles, elements, points_, data_, solve, context_);
+    const int iterations =
+        terrain_.creases.empty()
+            ? solve_fit(terrain_.kind, tin.triangles, elements, points_, data_, solve, context_)
+            : solve_creased(CreasedUnknowns(tin.triangles, tin.neighbors, terrain_.corner_gradients, points_), elements,
+                            data_, solve, context_);
     store();
     context_.report("fit", 1);
     return iterations;
@@ -89,7 +101,8 @@ class Fit {
 
   void store() {
     const auto held = [&](std::size_t v) { return !options_.held.empty() && options_.held[v] != 0; };
-    for (std::size_t v = 0; v < data_.size(); ++v)
+    const std::size_t vertices = terrain_.tin.vertex_count();
+    for (std::size_t v = 0; v < vertices; ++v)
       if (!held(v)) terrain_.tin.heights[v] = data_[v].x + grid_.reference;
     if (terrain_.kind == SurfaceKind::linear) return;
     if (options_.heights_only) {
@@ -97,8 +110,10 @@ class Fit {
       terrain_.gradient_kind = GradientKind::normals;
       return;
     }
-    for (std::size_t v = 0; v < data_.size(); ++v)
-      if (!held(v)) terrain_.gradients[v] = Vec2{data_[v].y, data_[v].z} / grid_.unit;
+    const std::vector<std::uint32_t> vertex = sector_vertices(
+        terrain_.tin, terrain_.creases.empty() ? terrain_.tin.triangles : terrain_.corner_gradients, data_.size());
+    for (std::size_t n = 0; n < data_.size(); ++n)
+      if (!held(vertex[n])) terrain_.gradients[n] = Vec2{data_[n].y, data_[n].z} / grid_.unit;
     terrain_.gradient_kind = GradientKind::fitted;
   }
 

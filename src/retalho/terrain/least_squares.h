@@ -38,9 +38,10 @@ struct LeastSquaresNotes {
 /// that no cell speaks for stay where they are. The result is finite, never worse by the objective than the start, and
 /// the same from any number of threads. `terrain` must have been made from `raster` (same cells), on a TIN with a
 /// convex outline, as refine_tin makes it, or a part of such a TIN (then some cells on its inner outline count in no
-/// triangle). Throws UsageError for negative weights or marks of another number, BadInput for another grid, or for
-/// the cubic rule of Clough-Tocher, whose pieces depend on more than their own triangle's corners. Cost: about 0.3 us a
-/// cell and 20 us a vertex on one thread; memory: 8 bytes a cell and about 2 kB a vertex.
+/// triangle). With creases every sector's gradient is fitted, and both sides' slopes along a crease stay the same.
+/// Throws UsageError for negative weights, marks of another number, or creases with heights_only, BadInput for another
+/// grid, or for the cubic rule of Clough-Tocher, whose pieces depend on more than their own triangle's corners. Cost:
+/// about 0.3 us a cell and 20 us a vertex on one thread; memory: 8 bytes a cell and about 2 kB a vertex.
 Terrain fit_least_squares(Terrain terrain, const Raster& raster, const LeastSquaresOptions& options = {},
                           const Context& context = {}, LeastSquaresNotes* notes = nullptr);
 
