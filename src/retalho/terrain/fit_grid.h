@@ -22,6 +22,7 @@ struct FitGrid {
   double range = 0;       ///< of the valid heights
   std::vector<double> z;  ///< height - reference; NaN: void
   std::size_t valid = 0;
+  std::vector<std::uint8_t> torn;  ///< 1: a crease lies between the cell's neighbours; empty: nowhere
 
   FitGrid() = default;
   FitGrid(const Raster& raster, const Context& context);
@@ -29,15 +30,20 @@ struct FitGrid {
   std::size_t cell(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
+  /// Marks the cells between whose neighbours the crease a-b (cell coordinates) lies: no difference across it is a
+  /// slope.
+  void tear(Vec2 a, Vec2 b);
   /// From cell coordinates (column, -row) to units of the fit.
   Vec2 place(Vec2 at) const { return {at.x * step.x, at.y * step.y}; }
   RowGrid lattice() const { return {{0, 0}, {1, 1}, columns, rows}; }
   RowGrid placed_lattice() const { return {{0, 0}, step, columns, rows}; }
 
-  /// Central differences, as ErrorReport::slope_rmse takes them; nullopt where a neighbour is missing.
+  /// Central differences, as ErrorReport::slope_rmse takes them; nullopt where a neighbour is missing or across a
+  /// crease.
   std::optional<Vec2> slope(int column, int row) const {
     if (column == 0 || row == 0 || column == columns - 1 || row == rows - 1) return std::nullopt;
     const std::size_t at = cell(column, row), across = static_cast<std::size_t>(columns);
+    if (!torn.empty() && torn[at] != 0) return std::nullopt;
     const Vec2 d{(z[at + 1] - z[at - 1]) / (2 * step.x), (z[at - across] - z[at + across]) / (2 * step.y)};
     if (std::isnan(d.x) || std::isnan(d.y)) return std::nullopt;
     return d;

@@ -14,13 +14,14 @@ template <std::size_t N>
 using Block = std::array<double, N * N>;
 
 /// Adds a little to a diagonal block, and to the right-hand side what keeps `start` where nothing else speaks. Returns
-/// what was added.
+/// what was added. An entry below `least` counts as that.
 template <std::size_t N>
-std::array<double, N> add_ridge(Block<N>& block, const double* start, double* right) {
+std::array<double, N> add_ridge(Block<N>& block, const double* start, double* right,
+                                const std::array<double, N>& least = {}) {
   std::array<double, N> ridge{};
   for (std::size_t i = 0; i < N; ++i) {
     double& entry = block[i * N + i];
-    ridge[i] = entry > 0 ? kRidge * entry : 1;
+    ridge[i] = std::max(entry, least[i]) > 0 ? kRidge * std::max(entry, least[i]) : 1;
     entry += ridge[i];
     right[i] += ridge[i] * start[i];
   }
@@ -335,8 +336,13 @@ int solve_creased(const CreasedUnknowns& unknowns, std::span<const FitElement> e
   }
   unknowns.gather(matrix.right(), right, context);
   std::vector<Block<3>> diagonal = unknowns.diagonal(elements);
+  // The cells of a small sector may all lie where its gradient has no effect but by rounding: what counts as an effect
+  // goes by the others'.
+  std::array<double, 3> mean{};
+  for (const Block<3>& block : diagonal)
+    for (std::size_t i = 0; i < 3; ++i) mean[i] += block[4 * i] / static_cast<double>(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const auto added = add_ridge<3>(diagonal[k], &x[3 * k], &right[3 * k]);
+    const auto added = add_ridge<3>(diagonal[k], &x[3 * k], &right[3 * k], mean);
     std::copy(added.begin(), added.end(), &ridge[3 * k]);
   }
   const auto multiply = [&](const std::vector<double>& in, std::vector<double>& out) {
