@@ -26,13 +26,34 @@ void check_breakline_flags(const BreaklineFlags& flags, bool from_points) {
     throw UsageError("--breakline-layer goes with --breaklines", {}, "--breakline-layer");
 }
 
+namespace {
+
+LineLayer read_lines(const Georef& ours, const std::string& input, const std::string& file, const std::string& layer,
+                     const char* option, const Context& context) {
+  LineLayer lines = read_line_layer(file, layer, option, context);
+  Georef theirs;
+  theirs.crs_wkt = lines.crs_wkt;
+  check_same_crs(ours, input, theirs, file);
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec2>> read_crease_lines(const Georef& grid, const std::string& input, const std::string& file,
+                                                 const std::string& layer, const Context& context) {
+  std::vector<std::vector<Vec2>> lines;
+  for (const VectorLine& line : read_lines(grid, input, file, layer, "--crease-layer", context).lines) {
+    std::vector<Vec2>& places = lines.emplace_back();
+    for (const Vec3& p : line.points) places.push_back(grid.to_local({p.x, p.y}));
+    if (line.closed) places.push_back(places.front());
+  }
+  return lines;
+}
+
 ConstrainedTin triangulate(const Program& program, const PointCloud& cloud, const std::string& input,
                            const BreaklineFlags& flags, ScatteredNotes* notes, const Context& context) {
   if (!flags.given()) return {triangulate_points(cloud.positions, notes, context), {}};
-  const LineLayer layer = read_line_layer(flags.file, flags.layer, "--breakline-layer", context);
-  Georef theirs;
-  theirs.crs_wkt = layer.crs_wkt;
-  check_same_crs(cloud.georef, input, theirs, flags.file);
+  const LineLayer layer = read_lines(cloud.georef, input, flags.file, flags.layer, "--breakline-layer", context);
   const PointSummary summary = summarize(cloud);
   const Vec3 extent = summary.maximum - summary.minimum;
   // Steps as long as the points are apart.

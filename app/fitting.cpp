@@ -107,6 +107,35 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
       ->type_name("FORM");
 }
 
+void add_crease_flags(CLI::App& command, SurfaceFlags& flags) {
+  command
+      .add_option(
+          "--creases", flags.creases,
+          "Grids, --vertices or --ratio: edges that the surface may fold along, at house walls and shores: none "
+          "(default), auto: in place of vertices, where that is nearer to the grid at as many numbers, or a "
+          "vector layer with the lines")
+      ->type_name("auto|none|FILE");
+  command.add_option("--crease-layer", flags.crease_layer, "Of --creases FILE: which layer")->type_name("NAME");
+}
+
+CreaseKind resolve_creases(const SurfaceFlags& flags, const BudgetFlags& budget, bool from_points) {
+  const bool none = flags.creases.empty() || flags.creases == "none";
+  if (!flags.crease_layer.empty() && (none || flags.creases == kAuto))
+    throw UsageError("--crease-layer goes with --creases FILE", {}, "--crease-layer");
+  if (none) return CreaseKind::none;
+  const auto refuse = [](const std::string& what, const char* where) {
+    throw UsageError("--creases " + what, {}, where);
+  };
+  if (from_points) refuse("takes grids: --breaklines says where a surface of points folds", "--creases");
+  if (compact_format(flags)) refuse("writes exact models: the compact form has no place for creases", "--format");
+  if (budget.max_error || !budget.given())
+    refuse("goes with a budget: give --vertices or --ratio, and no --max-error", "--creases");
+  if (flags.surface == kSurfaces[0]) refuse("is for smooth surfaces: a flat one folds along every edge", "--surface");
+  if (flags.fit == kFits[2]) refuse("has gradients of its own on each side: leave --fit z-only out", "--fit");
+  if (!refines_surface(flags, budget, from_points)) refuse("goes with --refine surface", "--refine");
+  return flags.creases == kAuto ? CreaseKind::chosen : CreaseKind::lines;
+}
+
 bool compact_format(const SurfaceFlags& flags) {
   const bool compact = choose("--format", flags.format, kFormats) == 1;
   if (!compact && flags.surface == kAuto)

@@ -43,6 +43,7 @@ struct SurfaceFlags {
   std::string refine = {};  ///< empty: surface for a smooth surface of a grid whose gradients are not asked for
   std::string effort = {};  ///< empty: normal
   std::string format = "exact";
+  std::string creases = {}, crease_layer = {};  ///< of fit alone; empty: none
 };
 void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
 /// Gradients that are not asked for: the vertices of a refined grid are its peaks and pits, where fitted gradients
@@ -59,6 +60,10 @@ FitKind resolve_fit(const SurfaceFlags& flags, bool from_points);
 bool refines_surface(const SurfaceFlags& flags, const BudgetFlags& budget, bool from_points);
 /// --effort: how long they are moved about.
 Effort resolve_effort(const SurfaceFlags& flags);
+/// --creases: none, chosen by the fit, or along the lines of a file. Throws UsageError for what does not go together.
+enum class CreaseKind : std::uint8_t { none, chosen, lines };
+void add_crease_flags(CLI::App& command, SurfaceFlags& flags);
+CreaseKind resolve_creases(const SurfaceFlags& flags, const BudgetFlags& budget, bool from_points);
 /// --format compact: numbers rounded, the fit knows of it (model/compact.h).
 bool compact_format(const SurfaceFlags& flags);
 /// Which surfaces a compact file may hold: --surface auto gives several, of which the smallest file counts. Throws

@@ -12,6 +12,7 @@
 #include "retalho/core/error.h"
 #include "retalho/core/memory.h"
 #include "retalho/model/model.h"
+#include "retalho/terrain/crease_lines.h"
 #include "retalho/terrain/point_report.h"
 #include "retalho/terrain/surface_refine.h"
 #include "retalho/tin/refine.h"
@@ -74,6 +75,27 @@ Fit fit_compactly(const Program& program, const Options& options, const Context&
   return best;
 }
 
+/// Vertices chosen by the surface's own error, with creases as asked for.
+Terrain refine(const Program& program, const Options& options, const Raster& raster, SurfaceKind kind,
+               const Budget& budget, const Context& context) {
+  const CreaseKind creases = resolve_creases(options.surface, options.budget, false);
+  const bool heights_only = resolve_fit(options.surface, false) == FitKind::z_only;
+  const SurfaceRefineOptions how = with_effort({.surface = kind,
+                                                .max_error = budget.max_error,
+                                                .vertices = budget.vertices,
+                                                .heights_only = heights_only,
+                                                .creases = creases == CreaseKind::chosen},
+                                               resolve_effort(options.surface));
+  if (creases != CreaseKind::lines) return refine_surface(raster, how, context);
+  const std::string& file = options.surface.creases;
+  const auto lines = read_crease_lines(raster.georef, options.input, file, options.surface.crease_layer, context);
+  CreaseLineNotes notes;
+  Terrain terrain = refine_along_lines(raster, lines, how, &notes, context);
+  program.say(fmt::format("{}: {} lines inside the grid with {} vertices, {} edges along them", file, notes.lines,
+                          notes.vertices, notes.edges));
+  return terrain;
+}
+
 Fit fit_grid(const Program& program, const Options& options, const SurfaceOptions& surface, const Context& context) {
   const bool fitted = refines_surface(options.surface, options.budget, false) ||
                       resolve_fit(options.surface, false) != FitKind::interpolate;
@@ -87,13 +109,7 @@ Fit fit_grid(const Program& program, const Options& options, const SurfaceOption
   // A grid without a range (flat, one cell, all void) leaves nothing to choose: 1 % of it is no tolerance.
   const bool chosen = budget.max_error > 0 || budget.vertices > 0;
   if (chosen && refines_surface(options.surface, options.budget, false)) {
-    fit.terrain = refine_surface(raster,
-                                 with_effort({.surface = surface.surface,
-                                              .max_error = budget.max_error,
-                                              .vertices = budget.vertices,
-                                              .heights_only = resolve_fit(options.surface, false) == FitKind::z_only},
-                                             resolve_effort(options.surface)),
-                                 context);
+    fit.terrain = refine(program, options, raster, surface.surface, budget, context);
     fit.seconds_triangulation = watch.seconds();
   } else {
     Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
@@ -158,6 +174,8 @@ std::string report_text(const ModelReport& report, const nlohmann::ordered_json&
       {"bytes", fmt::format("{}", report.bytes)},
       {"RMSE", number_text(e.rmse)},
       {"largest error", fmt::format("{:.6g} at {:.10g}, {:.10g}", e.max_error, e.max_error_at.x, e.max_error_at.y)}};
+  if (const auto creases = json.at("creases").get<std::size_t>(); creases > 0)
+    lines.emplace_back("creases", fmt::format("{}", creases));
   if (report.has_slope) lines.emplace_back("slope RMSE", number_text(e.slope_rmse));
   lines.emplace_back(report.has_slope ? "valid cells" : "places", fmt::format("{} of {}", e.valid_cells, e.cells));
   if (report.tolerance > 0)
@@ -170,6 +188,8 @@ std::string report_text(const ModelReport& report, const nlohmann::ordered_json&
 void run(const Program& program, const Options& options) {
   const Stopwatch watch;
   if (options.tiles.size) {
+    if (!options.surface.creases.empty())
+      throw UsageError("--creases takes no --tiles: edges at a seam would depend on both sides", {}, "--creases");
     if (takes_points(options.input, options.points)) throw UsageError("--tiles takes grids", {}, "--tiles");
     if (compact_format(options.surface))
       throw UsageError("--tiles writes exact models: leave --format compact out", {}, "--format");
@@ -179,6 +199,7 @@ void run(const Program& program, const Options& options) {
   if (options.tiles.jobs != 0) throw UsageError("--jobs goes with --tiles", {}, "--jobs");
   const bool from_points = takes_points(options.input, options.points), compact = compact_format(options.surface);
   check_breakline_flags(options.breaklines, from_points);
+  resolve_creases(options.surface, options.budget, from_points);
   if (compact) compact_options(options.surface, from_points);
   const SurfaceOptions surface = compact ? SurfaceOptions{} : resolve(options.surface, from_points);
   const bool by_surface = compact || refines_surface(options.surface, options.budget, from_points);
@@ -200,6 +221,7 @@ void run(const Program& program, const Options& options) {
   report.refined = by_surface;
   say_violations(program, report);
   nlohmann::ordered_json json = to_json(report);
+  json["creases"] = fit.terrain.creases.size();
   json["seconds"] = watch.seconds();
   json["seconds_triangulation"] = fit.seconds_triangulation;
   if (program.json)
@@ -231,6 +253,7 @@ void add_fit(CLI::App& root, Program& program) {
       ->type_name("FILE");
   add_budget_flags(*command, options->budget);
   add_surface_flags(*command, options->surface);
+  add_crease_flags(*command, options->surface);
   add_tile_flags(*command, options->tiles);
   add_grid_flags(*command, options->grid);
   command

@@ -81,7 +81,7 @@ TEST(Models, FitHasItsKeysAndKeepsTheToleranceOfTheFlatSurface) {
   const auto json = outcome.json();
   for (const char* key :
        {"surface", "vertices", "triangles", "coefficients", "numbers", "bytes", "rmse", "max_error", "max_error_at",
-        "slope_rmse", "cells", "valid_cells", "violations", "seconds", "seconds_triangulation"})
+        "slope_rmse", "cells", "valid_cells", "violations", "creases", "seconds", "seconds_triangulation"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["violations"], 0);
   EXPECT_LE(json["max_error"].get<double>(), 4);

@@ -112,7 +112,7 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
   }
 }
 
-void exchange(FitState& state, double share, const CgLimits& limits, const Context& context) {
+void remove_cheapest(FitState& state, std::size_t count, const Context& context) {
   const std::vector<double> costs = state.costs(context);
   const std::size_t n = state.mesh.vertex_count();
   std::vector<double> star_cost(n, 0.0);
@@ -122,11 +122,10 @@ void exchange(FitState& state, double share, const CgLimits& limits, const Conte
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return star_cost[a] < star_cost[b]; });
-  const auto wanted = static_cast<std::size_t>(share * static_cast<double>(n));
   std::vector<std::uint8_t> blocked(n, 0);
   CellMesh::Star star;
   for (const std::uint32_t v : order) {
-    if (chosen.size() == wanted) break;
+    if (chosen.size() == count) break;
     if (blocked[v] != 0) continue;
     state.mesh.star(v, star);
     if (!star.closed) continue;
@@ -136,6 +135,11 @@ void exchange(FitState& state, double share, const CgLimits& limits, const Conte
   // From the highest number down: what takes a removed one's place is never itself to be removed.
   std::sort(chosen.rbegin(), chosen.rend());
   for (const std::uint32_t v : chosen) state.remove(v);
+}
+
+void exchange(FitState& state, double share, const CgLimits& limits, const Context& context) {
+  const std::size_t n = state.mesh.vertex_count();
+  remove_cheapest(state, static_cast<std::size_t>(share * static_cast<double>(n)), context);
   state.refresh(context);
   state.solve(limits, context);
   while (state.mesh.vertex_count() < n && insert_at_centroids(state, n - state.mesh.vertex_count(), context) > 0) {

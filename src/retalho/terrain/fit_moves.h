@@ -21,6 +21,9 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
 /// `reach`: the step as a share of sqrt(star area / 3). True if it helped.
 bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context);
 
+/// Removes up to `count` vertices off the outline whose stars cost least, no two of them neighbours.
+void remove_cheapest(FitState& state, std::size_t count, const Context& context);
+
 /// Removes the share of the vertices whose stars cost least, no two of them neighbours, and inserts as many at
 /// centroids. Whether that helps shows after a relocation.
 void exchange(FitState& state, double share, const CgLimits& limits, const Context& context);

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "retalho/core/parallel.h"
+#include "retalho/terrain/creases.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/tin/grid_hull.h"
 
@@ -154,7 +155,8 @@ bool FitState::remove(std::uint32_t vertex) {
   return true;
 }
 
-Terrain to_terrain(const FitState& state, const Raster& raster, const Context& context) {
+Terrain to_terrain(const FitState& state, const Raster& raster, const Context& context,
+                   std::span<const std::array<std::uint32_t, 2>> creases) {
   const std::size_t n = state.mesh.vertex_count();
   std::vector<std::uint32_t> order(n), number(n);  // vertices in raster order
   std::iota(order.begin(), order.end(), 0U);
@@ -177,6 +179,20 @@ Terrain to_terrain(const FitState& state, const Raster& raster, const Context& c
   }
   std::sort(tin.triangles.begin(), tin.triangles.end());
   SurfaceOptions options{.surface = state.kind, .gradients = GradientKind::given};
+  if (!creases.empty()) {
+    build_neighbors(tin);
+    const EdgeTable edges = build_edges(tin);
+    std::vector<std::array<std::uint32_t, 2>> wanted;
+    for (const auto& [a, b] : creases)
+      wanted.push_back({std::min(number[a], number[b]), std::max(number[a], number[b])});
+    std::sort(wanted.begin(), wanted.end());
+    for (std::uint32_t e = 0; e < edges.vertices.size(); ++e)
+      if (std::binary_search(wanted.begin(), wanted.end(), edges.vertices[e])) options.creases.push_back(e);
+    std::size_t nodes = 0;
+    const auto sectors = crease_sectors(tin, edges, options.creases, &nodes);
+    const std::vector<std::uint32_t> vertex = sector_vertices(tin, sectors, nodes);
+    for (std::size_t k = n; k < nodes; ++k) gradients.push_back(gradients[vertex[k]]);
+  }
   if (state.kind != SurfaceKind::linear) options.given = std::move(gradients);
   Terrain terrain = make_terrain(std::move(tin), raster, options, context);
   if (state.kind != SurfaceKind::linear) terrain.gradient_kind = GradientKind::fitted;

@@ -2,7 +2,9 @@
 // triangles add to the least-squares problem. Internal to terrain/.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "retalho/core/context.h"
@@ -61,7 +63,8 @@ struct FitSnapshot {
   }
 };
 
-/// The terrain that the state is.
-Terrain to_terrain(const FitState& state, const Raster& raster, const Context& context);
+/// The terrain that the state is. `creases`: pairs of vertices; then further sectors start as the vertices' own.
+Terrain to_terrain(const FitState& state, const Raster& raster, const Context& context,
+                   std::span<const std::array<std::uint32_t, 2>> creases = {});
 
 }  // namespace retalho

@@ -60,6 +60,7 @@ class Fit {
     const auto& first = tin.triangles.front();
     weights_.inside = (at_[first[0]] + at_[first[1]] + at_[first[2]]) / 3;
     if (terrain.kind == SurfaceKind::powell_sabin || !terrain.creases.empty()) edges_ = build_edges(tin);
+    if (options.slopes_across_creases) return;
     for (const std::uint32_t e : terrain.creases) grid_.tear(at_[edges_.vertices[e][0]], at_[edges_.vertices[e][1]]);
   }
 

@@ -27,6 +27,7 @@ struct LeastSquaresOptions {
   int iterations = 1000;      ///< and after how many steps at most
   /// One mark a vertex: 1: its height and gradient stay, to the last bit. Empty: none does. Not with heights_only.
   std::span<const std::uint8_t> held = {};
+  bool slopes_across_creases = false;  ///< central differences count even where a crease lies between the cells
 };
 
 struct LeastSquaresNotes {

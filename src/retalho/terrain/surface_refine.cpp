@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/terrain/crease_choice.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/fit_moves.h"
 #include "retalho/terrain/fit_tolerance.h"
@@ -27,6 +28,10 @@ void check(const SurfaceRefineOptions& o) {
     throw UsageError("heights alone are fitted for a smooth surface: a flat one has no gradients to follow them");
   if (o.heights_only && o.max_error > 0)
     throw UsageError("heights alone are refined to a number of vertices, not to a largest error", {}, "max_error");
+  if (o.creases && (o.max_error > 0 || o.surface == SurfaceKind::linear || o.heights_only))
+    throw UsageError(
+        "creases are chosen for smooth surfaces and a budget: leave the largest error and heights_only out", {},
+        "creases");
   if (o.relocations < 0 || o.exchanges < 0) throw UsageError("relocations and exchanges must be 0 or more");
 }
 
@@ -115,6 +120,15 @@ Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options
   }
   grow(state, options.vertices, options.growth, context);
   better(state, options.relocations, options.exchanges, context);
+  if (options.creases)
+    if (const CreaseChoice creases = trade_for_creases(state, context); !creases.edges.empty())
+      return fit_least_squares(to_terrain(state, raster, context, creases.edges), raster,
+                               {.slope_weight = options.slope_weight,
+                                .fairness = options.fairness,
+                                .tolerance = kFinalSolve.tolerance,
+                                .iterations = kFinalSolve.iterations,
+                                .slopes_across_creases = true},  // they were chosen so
+                               context);
   state.solve(kFinalSolve, context);
   return to_terrain(state, raster, context);
 }

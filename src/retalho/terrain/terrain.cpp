@@ -130,7 +130,7 @@ std::optional<CrossDerivative> parse_cross_derivative(std::string_view name) {
 }
 
 std::size_t number_count(const Terrain& terrain) {
-  return 2 * terrain.tin.vertex_count() + coefficient_count(terrain);
+  return 2 * terrain.tin.vertex_count() + coefficient_count(terrain) + terrain.creases.size();
 }
 
 std::size_t coefficient_count(const Terrain& terrain) {

@@ -84,7 +84,7 @@ std::optional<SurfaceKind> parse_surface(std::string_view name);
 std::optional<GradientKind> parse_gradients(std::string_view name);
 std::optional<CrossDerivative> parse_cross_derivative(std::string_view name);
 
-/// How many numbers a plain table of the model stores: x, y and the coefficients (1 or 3) of each vertex.
+/// How many numbers a plain table of the model stores: x, y and coefficients of each vertex; which edges are creases.
 std::size_t number_count(const Terrain& terrain);
 /// Coefficients alone: 1 a vertex for linear, 3 for the smooth kinds.
 std::size_t coefficient_count(const Terrain& terrain);

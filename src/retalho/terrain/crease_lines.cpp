@@ -1,0 +1,172 @@
+#include "retalho/terrain/crease_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "retalho/core/error.h"
+#include "retalho/terrain/evaluate.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/terrain/fit_tolerance.h"
+#include "retalho/terrain/least_squares.h"
+#include "retalho/tin/breaklines.h"
+
+namespace retalho {
+namespace {
+
+using Line = std::vector<Vec3>;
+
+struct Box {
+  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  void add(Vec2 p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  Vec2 nearest(Vec2 p) const { return {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y)}; }
+};
+
+Box box_of_valid(const Raster& raster) {
+  Box box;
+  for (int r = 0; r < raster.rows; ++r)
+    for (int c = 0; c < raster.columns; ++c)
+      if (raster.valid(c, r)) box.add(raster.centre(c, r));
+  return box;
+}
+
+/// The share of a segment inside the box, as Liang and Barsky find it; nothing where from >= to.
+std::array<double, 2> inside(const Box& box, Vec2 a, Vec2 b) {
+  double from = 0, to = 1;
+  const Vec2 d = b - a;
+  const auto cut = [&](double step, double room) {  // step * t <= room
+    if (step == 0) {
+      if (room < 0) to = -1;
+    } else if (step > 0) {
+      to = std::min(to, room / step);
+    } else {
+      from = std::max(from, room / step);
+    }
+  };
+  cut(-d.x, a.x - box.low.x);
+  cut(d.x, box.high.x - a.x);
+  cut(-d.y, a.y - box.low.y);
+  cut(d.y, box.high.y - a.y);
+  return {from, to};
+}
+
+/// The parts of a line inside the box.
+std::vector<Line> clipped(const Box& box, const std::vector<Vec2>& line) {
+  constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Line> parts;
+  bool open = false;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const Vec2 a = line[k], b = line[k + 1];
+    const auto [from, to] = inside(box, a, b);
+    if (!(from < to)) {
+      open = false;
+      continue;
+    }
+    const Vec2 start = from > 0 ? box.nearest(a + from * (b - a)) : a;
+    const Vec2 end = to < 1 ? box.nearest(a + to * (b - a)) : b;
+    if (!open) parts.push_back({{start.x, start.y, kNoHeight}});
+    parts.back().push_back({end.x, end.y, kNoHeight});
+    open = to >= 1;
+  }
+  return parts;
+}
+
+double distance(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 d = b - a;
+  const double length2 = norm2(d);
+  const double t = length2 > 0 ? std::clamp(dot(p - a, d) / length2, 0.0, 1.0) : 0;
+  return norm(p - (a + t * d));
+}
+
+/// Marks the points within `reach` of a segment: they are met cell by cell of a lattice of that size.
+class Nearby {
+ public:
+  Nearby(const std::vector<Vec2>& points, double reach) : points_(points), reach_(reach) {
+    for (std::uint32_t k = 0; k < points.size(); ++k) cells_.push_back({cell(points[k].x), cell(points[k].y), k});
+    std::sort(cells_.begin(), cells_.end());
+    near_.assign(points.size(), 0);
+  }
+  void mark(Vec2 a, Vec2 b) {
+    const auto steps = static_cast<std::int64_t>(std::ceil(norm(b - a) / reach_)) + 1;
+    for (std::int64_t s = 0; s <= steps; ++s) {
+      const Vec2 p = a + (static_cast<double>(s) / static_cast<double>(steps)) * (b - a);
+      for (std::int64_t i = cell(p.x) - 1; i <= cell(p.x) + 1; ++i) {
+        const std::array<std::int64_t, 3> first{i, cell(p.y) - 1, -1}, last{i, cell(p.y) + 2, -1};
+        const auto end = std::lower_bound(cells_.begin(), cells_.end(), last);
+        for (auto at = std::lower_bound(cells_.begin(), cells_.end(), first); at != end; ++at)
+          if (distance(points_[static_cast<std::size_t>((*at)[2])], a, b) < reach_)
+            near_[static_cast<std::size_t>((*at)[2])] = 1;
+      }
+    }
+  }
+  bool is_near(std::size_t k) const { return near_[k] != 0; }
+
+ private:
+  std::int64_t cell(double v) const { return static_cast<std::int64_t>(std::floor(v / reach_)); }
+
+  const std::vector<Vec2>& points_;
+  double reach_;
+  std::vector<std::array<std::int64_t, 3>> cells_;
+  std::vector<char> near_;
+};
+
+}  // namespace
+
+Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec2>> given,
+                           const SurfaceRefineOptions& options, CreaseLineNotes* notes, const Context& context) {
+  if (options.max_error > 0 || options.vertices == 0)
+    throw UsageError("a surface along lines takes a budget of vertices, and no largest error", {}, "vertices");
+  if (options.surface == SurfaceKind::linear)
+    throw UsageError("lines to fold along are for smooth surfaces: a flat one folds along every edge", {}, "surface");
+  const Box box = box_of_valid(raster);
+  const Vec2 extent = box.high - box.low;
+  const double cell = std::sqrt(raster.cell_width * raster.cell_height);
+  const double spacing = std::max(cell, std::sqrt(extent.x * extent.y / static_cast<double>(options.vertices)));
+  std::vector<Line> lines;
+  std::size_t on_lines = 0;
+  for (const std::vector<Vec2>& line : given)
+    for (const Line& part : clipped(box, line)) {
+      lines.push_back(with_steps(part, spacing));
+      on_lines += lines.back().size();
+    }
+  if (lines.empty()) throw BadInput("none of the lines to fold along is inside the grid");
+  if (on_lines + 4 > options.vertices)
+    throw UsageError(fmt::format("the lines to fold along need {} vertices of a budget of {}: give more", on_lines,
+                                 options.vertices),
+                     {}, "vertices");
+  SurfaceRefineOptions elsewhere = options;
+  elsewhere.vertices -= on_lines;
+  elsewhere.creases = elsewhere.heights_only = false;
+  const Terrain base = refine_surface(raster, elsewhere, context);
+  const TerrainEvaluator surface(base, context);
+  Nearby nearby(base.tin.points, cell / 2);
+  for (Line& line : lines)
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      line[k].z = surface.value({line[k].x, line[k].y});
+      if (k > 0) nearby.mark({line[k - 1].x, line[k - 1].y}, {line[k].x, line[k].y});
+    }
+  std::vector<Vec3> points;
+  for (std::size_t v = 0; v < base.tin.vertex_count(); ++v) {
+    const Vec2 p = base.tin.points[v];
+    const bool corner = (p.x == box.low.x || p.x == box.high.x) && (p.y == box.low.y || p.y == box.high.y);
+    if (corner || !nearby.is_near(v)) points.push_back({p.x, p.y, base.tin.heights[v]});
+  }
+  ConstrainedTin made = triangulate_points(points, lines, nullptr, nullptr, context);
+  if (notes) *notes = {lines.size(), on_lines, made.edges.size()};
+  SurfaceOptions how{.surface = options.surface, .creases = std::move(made.edges)};
+  return fit_least_squares(make_terrain(std::move(made.tin), raster, how, context), raster,
+                           {.slope_weight = options.slope_weight,
+                            .fairness = options.fairness,
+                            .tolerance = kFinalSolve.tolerance,
+                            .iterations = kFinalSolve.iterations},
+                           context);
+}
+
+}  // namespace retalho
