@@ -4,7 +4,7 @@
 //   bench_fit --rows FILE [--most CELLS]   measures what FILE does not yet hold, the small grids first, and keeps it
 //   there;
 //                                          rows that another build of this program measured are dropped
-//   bench_fit --value NAME [--rows FILE]   one JSON line; NAME as in `values` and `costs` below
+//   bench_fit --value NAME [--rows FILE]   one JSON line; NAME as in `value`, `steps` and `cost` below
 //
 // Equal numbers: the flat surface stores 3 numbers a vertex, a smooth one 5, so it gets 0.6 of the vertices. Times are
 // CPU times with one thread, but for the row that compares two threads with one.
@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "retalho/raster/io.h"
+#include "retalho/raster/part.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
@@ -174,6 +175,33 @@ class Rows {
   json rows_;
 };
 
+/// Surfaces where the ground has steps: a part of dom1 (1 m, urban) and crater, at 3 % of the cells; the worse of both.
+double steps(const std::string& name) {
+  double worst = 0;
+  for (const char* file : {"dom1_32_356_5699_1_nw_2020.tif", "crater.pgm"}) {
+    Raster raster = read_raster(data_folder() / "dem" / file);
+    if (raster.columns == 1000) raster = part_of(raster, {300, 300, 400, 400});
+    if (name == "steps:tolerance") {
+      worst = std::max(worst, measure_tolerance(raster, 3).at("numbers").get<double>());
+      continue;
+    }
+    const auto vertices = static_cast<std::size_t>(0.03 * static_cast<double>(summarize(raster).valid));
+    SurfaceRefineOptions options{.vertices = 3 * vertices / 5};
+    const auto rmse = [&](const Terrain& t) { return assess(t, raster, 0, one_thread()).rmse; };
+    const double smooth = name == "steps:smooth" ? rmse(refine_surface(raster, options, one_thread())) : 0;
+    options.creases = true;
+    const Terrain creased = refine_surface(raster, options, one_thread());
+    if (number_count(creased) > 5 * options.vertices) throw std::runtime_error("more numbers than the budget has");
+    const double base = smooth > 0 ? smooth
+                                   : rmse(make_terrain(refine_tin(raster, {.vertices = vertices}, one_thread()), raster,
+                                                       {.surface = SurfaceKind::linear}, one_thread()));
+    std::cerr << file << ": " << creased.creases.size() << " creases, RMSE " << rmse(creased) << " over " << base
+              << "\n";
+    worst = std::max(worst, rmse(creased) / base);
+  }
+  return worst;
+}
+
 /// Costs that need a run of their own, on bigtujunga (0.77 M cells) at 3 %.
 double cost(const std::string& name) {
   const Raster raster = read_raster(data_folder() / "dem" / "bigtujunga.tif");
@@ -225,6 +253,10 @@ int main(int argc, char** argv) {
     const auto wanted = flags.find("--value");
     if (wanted != flags.end() && wanted->second.starts_with("cost:") && wanted->second != "cost:refine:worst") {
       std::cout << json{{"value", cost(wanted->second)}} << "\n";
+      return 0;
+    }
+    if (wanted != flags.end() && wanted->second.starts_with("steps:")) {
+      std::cout << json{{"value", steps(wanted->second)}} << "\n";
       return 0;
     }
     Rows rows(flags["--rows"]);
