@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "program.h"
@@ -35,9 +36,10 @@ TEST(Creases, AlongTheLinesOfAFile) {
 
 TEST(Creases, ChosenInPlaceOfVertices) {
   const ScratchFolder folder;
-  folder.put("town.asc", ascii_grid(72, 60, [](int c, int r) {
-               const int i = c % 24, j = r % 20;
-               return i < 5 || i > 18 || j < 4 || j > 15 ? 100.0 : 110.0 - 0.6 * std::abs(i - 11.5);
+  // Hipped roofs in rows, askew to the grid.
+  const auto from_middle = [](double along) { return std::abs(along - 40 * std::floor(along / 40) - 20); };
+  folder.put("town.asc", ascii_grid(96, 80, [&](int c, int r) {
+               return 100 + std::max(0.0, 12 - 0.8 * std::max(from_middle(c + 0.2 * r), from_middle(r - 0.2 * c)));
              }));
   const Outcome without = run(folder, "fit town.asc -o a.retalho --vertices 200 --json");
   const Outcome with = run(folder, "fit town.asc -o b.retalho --vertices 200 --creases auto --json");

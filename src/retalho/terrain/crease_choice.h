@@ -24,8 +24,8 @@ struct CreaseChoice {
 /// Cost: some 50 us a vertex and round, and a solve.
 CreaseChoice choose_creases(const FitState& state, std::size_t numbers, double price, const Context& context);
 
-/// Creases in place of vertices: as many of those whose stars cost least go as the creases' numbers make up for. Where
-/// that does not lower the objective, the state stays as it is and there is no crease.
+/// Of a state that is solved. Creases in place of vertices: as many of those whose stars cost least go as the creases'
+/// numbers make up for. Where that does not lower the objective, the state stays as it is and there is no crease.
 CreaseChoice trade_for_creases(FitState& state, const Context& context);
 
 }  // namespace retalho

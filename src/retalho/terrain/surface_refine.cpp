@@ -11,6 +11,7 @@
 #include "retalho/terrain/fit_moves.h"
 #include "retalho/terrain/fit_tolerance.h"
 #include "retalho/terrain/least_squares.h"
+#include "retalho/terrain/report.h"
 
 namespace retalho {
 namespace {
@@ -120,17 +121,21 @@ Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options
   }
   grow(state, options.vertices, options.growth, context);
   better(state, options.relocations, options.exchanges, context);
-  if (options.creases)
-    if (const CreaseChoice creases = trade_for_creases(state, context); !creases.edges.empty())
-      return fit_least_squares(to_terrain(state, raster, context, creases.edges), raster,
-                               {.slope_weight = options.slope_weight,
-                                .fairness = options.fairness,
-                                .tolerance = kFinalSolve.tolerance,
-                                .iterations = kFinalSolve.iterations,
-                                .slopes_across_creases = true},  // they were chosen so
-                               context);
   state.solve(kFinalSolve, context);
-  return to_terrain(state, raster, context);
+  Terrain terrain = to_terrain(state, raster, context);
+  if (!options.creases) return terrain;
+  const CreaseChoice chosen = trade_for_creases(state, context);
+  if (chosen.edges.empty()) return terrain;
+  Terrain creased = fit_least_squares(to_terrain(state, raster, context, chosen.edges), raster,
+                                      {.slope_weight = options.slope_weight,
+                                       .fairness = options.fairness,
+                                       .tolerance = kFinalSolve.tolerance,
+                                       .iterations = kFinalSolve.iterations,
+                                       .slopes_across_creases = true},  // they were chosen so
+                                      context);
+  // The objective counts slopes too, and a cell on a crease has two: heights decide.
+  const bool nearer = assess(creased, raster, 0, context).rmse < assess(terrain, raster, 0, context).rmse;
+  return nearer ? creased : terrain;
 }
 
 }  // namespace retalho

@@ -26,8 +26,8 @@ struct SurfaceRefineOptions {
   double growth = 0.25;       ///< of the number of vertices a round
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions
   double fairness = 1e-5;
-  bool creases = false;  ///< edges may be creases in place of vertices, where that lowers the objective: no more
-                         ///< numbers than `vertices` have without; smooth surfaces, a budget alone
+  bool creases = false;  ///< edges may be creases in place of vertices, where that lowers the objective and the
+                         ///< RMSE: no more numbers than `vertices` have without; smooth surfaces, a budget alone
 };
 
 /// The same with the relocations and exchanges of an effort.
