@@ -1,12 +1,16 @@
 #include "contour_surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "needs.h"
 #include "retalho/core/error.h"
 #include "retalho/core/in_order.h"
 #include "retalho/model/model.h"
+#include "retalho/model/tiled.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/tiles/source.h"
 #include "retalho/tin/refine.h"
 
 namespace retalho::app {
@@ -23,6 +27,17 @@ void measure(TracedSurface& surface) {
   surface.high = *high;
   surface.cell =
       terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height) : mean_edge(terrain.tin);
+}
+
+/// A tiled model of which no more is read at a time than the bound allows.
+void open_tiles(TracedSurface& surface, const SurfaceChoice& options, const Context& context) {
+  surface.tiles = tile_source(options.input, options.tile_memory.bytes());
+  surface.range = measure_range(*surface.tiles, context);
+  if (!surface.range.data)
+    throw CannotRead(fmt::format("no tile of '{}' holds any data", options.input), options.input);
+  surface.low = surface.range.low;
+  surface.high = surface.range.high;
+  surface.cell = std::min(surface.tiles->cell_width, surface.tiles->cell_height);
 }
 
 }  // namespace
@@ -42,6 +57,10 @@ TracedSurface load_surface(const Program& program, const SurfaceChoice& options,
   if (model) {
     if (!options.kind.empty())
       throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
+    if (!options.whole && is_tiled_model(options.input)) {
+      open_tiles(surface, options, context);
+      return surface;
+    }
     surface.terrain = load_terrain(options.input);
     check_terrain_need("contouring", *surface.terrain, kVertexLoaded, 0, options.input);
     measure(surface);

@@ -86,6 +86,16 @@ Model load_any_model(const std::string& path, ModelFileNotes* notes) {
   return load_model(path, notes);
 }
 
+std::size_t TileMemoryFlag::bytes() const {
+  if (megabytes < 1) throw UsageError("--tile-memory must be 1 MB or more", {}, "--tile-memory");
+  return megabytes << 20;
+}
+
+void add_tile_memory_flag(CLI::App& command, TileMemoryFlag& flag) {
+  command.add_option("--tile-memory", flag.megabytes, "Tiled models: how much of them is kept in memory (default 512)")
+      ->type_name("MB");
+}
+
 Terrain load_terrain(const std::string& path, ModelFileNotes* notes) {
   Model model = load_any_model(path, notes);
   if (Terrain* terrain = std::get_if<Terrain>(&model)) return std::move(*terrain);

@@ -12,6 +12,7 @@
 #include "retalho/model/model.h"
 #include "retalho/raster/io.h"
 #include "retalho/terrain/terrain.h"
+#include "retalho/tiles/reader.h"
 
 namespace retalho::app {
 
@@ -40,6 +41,13 @@ bool takes_points(const std::string& path, const PointOptions& options);
 Terrain load_terrain(const std::string& path, ModelFileNotes* notes = nullptr);
 /// Any model. Throws CannotRead, which says how models are made where the file is none.
 Model load_any_model(const std::string& path, ModelFileNotes* notes = nullptr);
+
+/// --tile-memory of the commands that read a tiled model by its tiles.
+struct TileMemoryFlag {
+  std::size_t megabytes = TileReader::kBound >> 20;
+  std::size_t bytes() const;  ///< throws UsageError for less than 1 MB
+};
+void add_tile_memory_flag(CLI::App& command, TileMemoryFlag& flag);
 
 /// The name of a CRS, out of its WKT; empty when there is none.
 std::string crs_name(const std::string& wkt);

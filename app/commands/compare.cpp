@@ -22,7 +22,7 @@ struct Options {
   BudgetFlags budget;
   VisibilityFlags visibility;
   bool markdown = false, csv = false, baselines = false;
-  std::size_t tile_memory = TileReader::kBound >> 20;  // MB
+  TileMemoryFlag tile_memory;
 };
 
 /// Every kind on the same TIN: the paper's gradients first, then the better ones.
@@ -114,7 +114,7 @@ bool can_stream(const Options& options) {
 std::vector<ModelReport> compare_tiles(const Program& program, const Options& options, const Context& context) {
   std::vector<ModelReport> reports;
   for (const std::string& path : options.models) {
-    TileReader reader(path, options.tile_memory << 20);
+    TileReader reader(path, options.tile_memory.bytes());
     const TiledIndex& index = reader.index();
     ReadOptions read{.band = options.grid.band, .nodata = options.grid.nodata};
     check_same_crs(index.georef, path, inspect_raster(options.dem, read).georef, options.dem);
@@ -186,7 +186,7 @@ void run(const Program& program, const Options& options) {
   if (!options.visibility.maps.empty() && !options.visibility.radius)
     throw UsageError("--visibility-maps needs --visibility RADIUS (0: no limit)", {}, "--visibility-maps");
   const Context context = program.context();
-  if (options.tile_memory < 1) throw UsageError("--tile-memory must be 1 MB or more", {}, "--tile-memory");
+  options.tile_memory.bytes();  // checked before the work
   const bool fitted = options.models.empty();
   std::optional<VisibilityErrors> sight;
   std::vector<ModelReport> reports;
@@ -241,10 +241,7 @@ void add_compare(CLI::App& root, Program& program) {
   add_budget_flags(*command, options->budget);
   add_grid_flags(*command, options->grid);
   add_visibility_flags(*command, options->visibility);
-  command
-      ->add_option("--tile-memory", options->tile_memory,
-                   "Tiled models: how much of them is kept in memory (default 512)")
-      ->type_name("MB");
+  add_tile_memory_flag(*command, options->tile_memory);
   command->add_flag("--baselines", options->baselines,
                     "Beside each model flat surfaces with its numbers and with its bytes: greedy, and strong (heights "
                     "fitted, vertices relocated); without models smooth ones beside the strong flat one");

@@ -151,7 +151,7 @@ void run(const Program& program, const Options& options) {
   const bool sheet = is_sheet(options.output);
   SurfaceChoice choice = options.surface;
   // Lines alone leave as they are traced; sheets and bands want the whole surface.
-  choice.whole = sheet || options.bands;
+  choice.whole = sheet || options.bands || options.conics;
   TracedSurface surface = load_surface(program, choice, context);
   if (options.conics) {
     if (!surface.terrain)
@@ -162,8 +162,9 @@ void run(const Program& program, const Options& options) {
   ContourOptions contour;
   contour.tolerance = options.tolerance > 0 ? options.tolerance : 0.1 * surface.cell;
   if (!(options.tolerance > 0))
-    program.say(fmt::format("--tolerance {:.6g}: a tenth of {} (chosen, as none was given)", contour.tolerance,
-                            surface.raster || surface.terrain->grid.columns > 0 ? "a cell" : "a triangle's edge"));
+    program.say(fmt::format(
+        "--tolerance {:.6g}: a tenth of {} (chosen, as none was given)", contour.tolerance,
+        surface.raster || surface.tiles || surface.terrain->grid.columns > 0 ? "a cell" : "a triangle's edge"));
   // Curves are fitted to every traced vertex, and take what tracing leaves of the tolerance.
   const double tolerance = contour.tolerance;
   contour.simplify = !options.raw && !options.sheet.curves;
@@ -173,7 +174,7 @@ void run(const Program& program, const Options& options) {
   const std::vector<double> levels = levels_of(options, surface);
   MapSheet map;
   const Georef georef = surface.georef();
-  const bool stream = surface.raster && !choice.whole;
+  const bool stream = surface.tiles || (surface.raster && !choice.whole);
   std::optional<BicubicGrid> bicubic;
   if (surface.raster && !stream) {
     bicubic = make_bicubic(*surface.raster, surface.bicubic, context);
@@ -200,13 +201,14 @@ void run(const Program& program, const Options& options) {
   ContourSet set;
   if (stream) {
     write_contours(georef, options.output, file, context, [&](const TakeContours& take) {
-      set = stream_contours(
-          *surface.raster, surface.bicubic, levels, contour,
-          [&](const ContourSet& part) {
-            tally.add(part);
-            take(part);
-          },
-          context, &extras.stats);
+      const TakeContours count_and_take = [&](const ContourSet& part) {
+        tally.add(part);
+        take(part);
+      };
+      set = surface.tiles ? stream_contours(*surface.tiles, surface.range, levels, contour, count_and_take, context,
+                                            &extras.stats)
+                          : stream_contours(*surface.raster, surface.bicubic, levels, contour, count_and_take, context,
+                                            &extras.stats);
     });
   } else {
     set = bicubic ? trace_contours(std::move(*bicubic), levels, contour, context, &extras)
@@ -312,6 +314,7 @@ void add_contour(CLI::App& root, Program& program) {
       ->type_name("NAME");
   command->add_option("--layer", options->surface.points.layer, "Vector files with several layers: which one")
       ->type_name("NAME");
+  add_tile_memory_flag(*command, options->surface.tile_memory);
   add_breakline_flags(*command, options->surface.breaklines);
   command
       ->add_option("--compare-surfaces", options->compare,

@@ -30,7 +30,7 @@ struct Options {
   std::vector<std::string> what;
   std::vector<std::string> at;
   bool cog = false;
-  std::size_t tile_memory = TileReader::kBound >> 20;  // MB
+  TileMemoryFlag tile_memory;
   bool set(What w) const { return std::find(what.begin(), what.end(), kWhat[w]) != what.end(); }
 };
 
@@ -136,11 +136,6 @@ Terrain frame_of(const TiledIndex& index) {
   return frame;
 }
 
-std::size_t bound_of(const Options& options) {
-  if (options.tile_memory < 1) throw UsageError("--tile-memory must be 1 MB or more", {}, "--tile-memory");
-  return options.tile_memory << 20;
-}
-
 double quantity(What what, double height_here, Vec2 gradient) {
   if (what == height || std::isnan(height_here)) return height_here;
   return what == slope ? slope_degrees(gradient) : aspect_degrees(gradient);
@@ -218,7 +213,7 @@ void sample_raster(const Program& program, const Options& options) {
   const Context context = program.context();
   const WriteOptions how{.driver = options.cog ? "COG" : "", .overwrite = program.overwrite};
   if (is_tiled_model(options.model) && takes_rows(options.output, how)) {
-    TileReader reader(options.model, bound_of(options));
+    TileReader reader(options.model, options.tile_memory.bytes());
     const Terrain frame = frame_of(reader.index());
     Target target = options.like.empty() ? target_of_model(program, options, frame) : target_like_place(options, frame);
     if (what != height) target.raster.height_unit.clear();
@@ -287,7 +282,7 @@ void sample_points(const Program& program, const Options& options) {
   std::optional<TerrainEvaluator> evaluator;
   if (is_tiled_model(options.model)) {
     note_input(options.model);
-    tiles.emplace(options.model, bound_of(options));
+    tiles.emplace(options.model, options.tile_memory.bytes());
   } else {
     terrain = load_terrain(options.model);
     evaluator.emplace(*terrain, context);
@@ -369,10 +364,7 @@ void add_sample(CLI::App& root, Program& program) {
                    "height (default); slope, aspect: degrees; normal; curvature: mean, 1 / unit. Repeat it for points")
       ->type_name("KIND");
   command->add_flag("--cog", options->cog, "The raster as a Cloud-Optimised GeoTIFF (.tif), with overviews");
-  command
-      ->add_option("--tile-memory", options->tile_memory,
-                   "Tiled models: how much of them is kept in memory (default 512)")
-      ->type_name("MB");
+  add_tile_memory_flag(*command, options->tile_memory);
   command->add_option("--at", options->at, "Places in CRS coordinates")->type_name("X,Y");
   command
       ->add_option("--points", options->points_file,

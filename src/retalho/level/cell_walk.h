@@ -21,25 +21,40 @@ struct CellSide {
   bool vertical;
 };
 
+/// A grid of which `first_column` and `first_row` say where its cells lie in the coordinates that are walked in.
+struct PlacedGrid {
+  const GridDomain& grid;
+  int first_column = 0, first_row = 0;
+  double cell_width = grid.cell_width, cell_height = grid.cell_height;
+
+  PlacedGrid(const GridDomain& domain, int column = 0, int row = 0)  // NOLINT: most grids begin at the origin
+      : grid(domain), first_column(column), first_row(row) {}
+};
+
 /// The cell nearest to `p`; all that lies outside of the grid is one ring of cells around it.
-inline Cell cell_of(Vec2 p, const GridDomain& grid) {
-  return {static_cast<int>(std::clamp(std::floor(p.x / grid.cell_width + 0.5), -1.0, 1.0 * grid.columns)),
-          static_cast<int>(std::clamp(std::floor(-p.y / grid.cell_height + 0.5), -1.0, 1.0 * grid.rows))};
+inline Cell cell_of(Vec2 p, const PlacedGrid& grid) {
+  const auto place = [](double cells, int first, int count) {
+    return static_cast<int>(std::clamp(std::floor(cells + 0.5), first - 1.0, 1.0 * first + count));
+  };
+  return {place(p.x / grid.cell_width, grid.first_column, grid.grid.columns),
+          place(-p.y / grid.cell_height, grid.first_row, grid.grid.rows)};
 }
 
-inline bool holds_data(Cell c, const GridDomain& grid) {
-  return c.column >= 0 && c.row >= 0 && c.column < grid.columns && c.row < grid.rows &&
-         (grid.valid.empty() || grid.valid.get(c.column, c.row));
+inline bool holds_data(Cell c, const PlacedGrid& placed) {
+  const GridDomain& grid = placed.grid;
+  const int column = c.column - placed.first_column, row = c.row - placed.first_row;
+  return column >= 0 && row >= 0 && column < grid.columns && row < grid.rows &&
+         (grid.valid.empty() || grid.valid.get(column, row));
 }
 
 /// The south-eastern corner of a cell.
-inline Vec2 corner_place(Cell c, const GridDomain& grid) {
+inline Vec2 corner_place(Cell c, const PlacedGrid& grid) {
   return {(c.column + 0.5) * grid.cell_width, -(c.row + 0.5) * grid.cell_height};
 }
 
 /// Calls step(from, to, side, place) for each side that the segment from a to b passes, in their order.
 template <class Step>
-void walk_cells(Vec2 a, Vec2 b, const GridDomain& grid, const Step& step) {
+void walk_cells(Vec2 a, Vec2 b, const PlacedGrid& grid, const Step& step) {
   Cell here = cell_of(a, grid);
   const Cell last = cell_of(b, grid);
   const auto part = [](double line, double from, double to) {

@@ -13,7 +13,7 @@ struct Part {
 
 class LineClipper {
  public:
-  LineClipper(const GridDomain& grid, std::uint32_t first_root)
+  LineClipper(const PlacedGrid& grid, std::uint32_t first_root)
       : grid_(grid), next_root_(first_root), near_(1e-9 * std::min(grid.cell_width, grid.cell_height)) {}
 
   /// The parts of a line in cells with data; `whole` when it is not cut.
@@ -115,7 +115,7 @@ class LineClipper {
     for (const Vec2 p : more.points) append(to, p);
   }
 
-  const GridDomain& grid_;
+  PlacedGrid grid_;
   std::uint32_t next_root_;
   double near_;
   std::vector<Stretch> stretches_;
@@ -131,7 +131,7 @@ bool has_voids(const GridDomain& grid) {
 }
 
 std::vector<LineCut> clip_to_cells(ContourSet& set, std::vector<std::array<std::uint32_t, 2>>& ends,
-                                   std::uint32_t first_root, const GridDomain& grid) {
+                                   std::uint32_t first_root, const PlacedGrid& grid) {
   std::vector<Vec2> points;
   std::vector<ContourLine> lines;
   std::vector<std::array<std::uint32_t, 2>> new_ends;

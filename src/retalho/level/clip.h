@@ -24,7 +24,7 @@ struct LineCut {
 /// `ends`: what each line's ends are called; cut ends get numbers from `first_root` on. A part may have no length; it
 /// has two points then.
 std::vector<LineCut> clip_to_cells(ContourSet& set, std::vector<std::array<std::uint32_t, 2>>& ends,
-                                   std::uint32_t first_root, const GridDomain& grid);
+                                   std::uint32_t first_root, const PlacedGrid& grid);
 
 /// Drops lines without length.
 void drop_points(ContourSet& set);

@@ -7,6 +7,7 @@
 #include "retalho/core/error.h"
 #include "retalho/level/bands.h"
 #include "retalho/level/clip.h"
+#include "retalho/level/contour_options.h"
 #include "retalho/level/fixed_grid.h"
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/raw_lines.h"
@@ -17,26 +18,6 @@
 
 namespace retalho {
 namespace {
-
-void check(const std::vector<double>& levels, const ContourOptions& options) {
-  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
-    throw BadInput(fmt::format("the tolerance of contour lines must be a positive number, not {}", options.tolerance));
-  check_levels(levels);
-}
-
-/// Lines that will be thinned are traced closer than they have to be.
-double raw_tolerance(const ContourOptions& options) {
-  return options.simplify ? options.tolerance / 5 : options.tolerance;
-}
-
-/// What a set of lines is said to be, before there are lines.
-ContourSet empty_set(std::vector<double> levels, const ContourOptions& options, double quantum) {
-  ContourSet set;
-  set.levels = std::move(levels);
-  set.tolerance = options.tolerance;
-  set.height_quantum = quantum;
-  return set;
-}
 
 void append(RawLines& all, const RawLines& part) {
   for (std::size_t l = 0; l < part.set.lines.size(); ++l) {
@@ -101,13 +82,13 @@ std::vector<double> contour_levels(double low, double high, double interval, dou
 
 ContourSet trace_contours(const BicubicGrid& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context, ContourExtras* extras) {
-  check(levels, options);
+  check_contours(levels, options);
   return trace_fixed(fix_grid(grid, context), std::move(levels), options, context, extras);
 }
 
 ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const ContourOptions& options,
                           const Context& context, ContourExtras* extras) {
-  check(levels, options);
+  check_contours(levels, options);
   const FixedGrid fixed = fix_grid(grid, context);
   grid = {};
   return trace_fixed(fixed, std::move(levels), options, context, extras);
@@ -116,7 +97,7 @@ ContourSet trace_contours(BicubicGrid&& grid, std::vector<double> levels, const 
 ContourSet stream_contours(const Raster& raster, const BicubicOptions& surface, std::vector<double> levels,
                            const ContourOptions& options, const TakeContours& take, const Context& context,
                            ContourStats* stats) {
-  check(levels, options);
+  check_contours(levels, options);
   const FixedRows rows(raster, surface, context);
   const FixedLevels fixed_levels(levels, rows.per_unit());
   ContourSet whole = empty_set(std::move(levels), options, 1 / rows.per_unit());
@@ -133,7 +114,7 @@ ContourSet stream_contours(const Raster& raster, const BicubicOptions& surface, 
 
 ContourSet trace_contours(const Raster& raster, const BicubicOptions& surface, std::vector<double> levels,
                           const ContourOptions& options, const Context& context, ContourStats* stats) {
-  check(levels, options);
+  check_contours(levels, options);
   const FixedRows rows(raster, surface, context);
   const FixedLevels fixed_levels(levels, rows.per_unit());
   StripTotals totals;
@@ -146,7 +127,7 @@ ContourSet trace_contours(const Raster& raster, const BicubicOptions& surface, s
 
 ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, const ContourOptions& options,
                           const Context& context, ContourExtras* extras) {
-  check(levels, options);
+  check_contours(levels, options);
   const EdgeTable edges = build_edges(terrain.tin);
   const double per_unit = terrain_quanta(terrain, edges, context);
   const FixedLevels fixed_levels(levels, per_unit);

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <list>
 #include <vector>
 
+#include "retalho/level/line_chains.h"
 #include "retalho/level/raw_lines.h"
 #include "retalho/level/trace_grid.h"
 
@@ -22,39 +22,13 @@ class LineJoiner {
   }
 
  private:
-  struct Part {
-    std::uint32_t start;       ///< its first point
-    std::vector<Vec2> points;  ///< the last one is the next part's first
-  };
-  /// A line in the making. Ends stand at places of the strip in hand: roots of its first row, then of its last.
-  struct Chain {
-    int level;
-    std::list<Part> parts;
-    std::uint32_t stop;
-    std::int64_t head, tail;  ///< kEnd: it goes on nowhere
-  };
-  static constexpr std::int64_t kEnd = -1;
-  /// What waits at a place.
-  struct Waiting {
-    std::uint32_t chain = kNoPoint;
-    bool head = false;  ///< the chain's head waits for what comes before it
-  };
+  /// Where another strip may go on: the roots of the first row and of the last one, by their numbers.
+  LineChains::Place place_of(std::uint32_t point, const GridStrip& strip, bool last) const;
 
-  std::int64_t place_of(std::uint32_t point, const GridStrip& strip, bool last) const;
-  void add_piece(const RawLines& lines, std::size_t line, const GridStrip& strip, bool last);
-  std::uint32_t new_chain(int level);
-  void finish_if_whole(std::uint32_t chain);
-  void finish(std::uint32_t chain, bool closed);
-  /// What still waits on the first row waits for nothing; the last row becomes the next strip's first.
-  void leave(const GridStrip& strip, bool last);
-
-  std::vector<Chain> chains_;
-  std::vector<std::uint32_t> free_;
-  std::vector<Waiting> waiting_;          ///< at the places of the strip in hand
-  std::vector<std::uint32_t> seam_;       ///< roots of its first row, numbered through all strips
-  std::vector<std::uint32_t> next_seam_;  ///< and of its last one
+  LineChains chains_;
+  std::vector<std::uint32_t> seam_;       ///< roots of the first row, numbered through all strips
+  std::vector<std::uint32_t> next_seam_;  ///< and of the last one
   std::uint64_t offset_ = 0, total_ = 0;
-  RawLines done_;
 };
 
 }  // namespace retalho

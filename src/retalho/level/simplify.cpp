@@ -185,8 +185,8 @@ void simplify(RawLines& lines, const FixedLevels& levels, const Context& context
 
 template <SurfaceKind Kind>
 void simplify_kind(RawLines& lines, const Terrain& terrain, const EdgeTable& edges, double per_unit,
-                   const FixedLevels& levels, const Context& context) {
-  const bool convex = convex_border(terrain.tin);
+                   const FixedLevels& levels, const Context& context, bool part) {
+  const bool convex = !part && convex_border(terrain.tin);
   simplify(lines, levels, context, [&] { return TinSurface<Kind>(terrain, edges, per_unit, convex); });
 }
 
@@ -197,14 +197,14 @@ void simplify_lines(RawLines& lines, const FixedGrid& grid, const FixedLevels& l
 }
 
 void simplify_lines(RawLines& lines, const Terrain& terrain, const EdgeTable& edges, double per_unit,
-                    const FixedLevels& levels, const Context& context) {
+                    const FixedLevels& levels, const Context& context, bool part) {
   switch (terrain.kind) {
     case SurfaceKind::powell_sabin:
-      return simplify_kind<SurfaceKind::powell_sabin>(lines, terrain, edges, per_unit, levels, context);
+      return simplify_kind<SurfaceKind::powell_sabin>(lines, terrain, edges, per_unit, levels, context, part);
     case SurfaceKind::clough_tocher:
-      return simplify_kind<SurfaceKind::clough_tocher>(lines, terrain, edges, per_unit, levels, context);
+      return simplify_kind<SurfaceKind::clough_tocher>(lines, terrain, edges, per_unit, levels, context, part);
     case SurfaceKind::linear:
-      return simplify_kind<SurfaceKind::linear>(lines, terrain, edges, per_unit, levels, context);
+      return simplify_kind<SurfaceKind::linear>(lines, terrain, edges, per_unit, levels, context, part);
   }
 }
 

@@ -15,7 +15,8 @@ namespace retalho {
 
 /// Thins the vertices of `lines`; every line stays within lines.set.tolerance of its level set.
 void simplify_lines(RawLines& lines, const FixedGrid& grid, const FixedLevels& levels, const Context& context);
+/// `part`: the surface goes on beyond the terrain's border, unseen; no chord may come near it.
 void simplify_lines(RawLines& lines, const Terrain& terrain, const EdgeTable& edges, double per_unit,
-                    const FixedLevels& levels, const Context& context);
+                    const FixedLevels& levels, const Context& context, bool part = false);
 
 }  // namespace retalho

@@ -41,6 +41,16 @@ bool forward(const Terrain& terrain, std::uint32_t triangle, int k) {
   return corner[static_cast<std::size_t>((k + 1) % 3)] < corner[static_cast<std::size_t>((k + 2) % 3)];
 }
 
+/// The ends of a half of an edge, out of the edge's own two vertices: the same bits whichever triangle asks, also where
+/// the two lie in different tiles.
+template <class Topology>
+std::array<Vec2, 2> half_ends(const Terrain& terrain, const EdgeTable& edges, std::uint32_t edge, int half) {
+  const Vec2 low = terrain.tin.points[edges.vertices[edge][0]], high = terrain.tin.points[edges.vertices[edge][1]];
+  if constexpr (Topology::kHalves == 1) return {low, high};
+  const Vec2 split = low + terrain.edge_split[edge] * (high - low);
+  return half == 0 ? std::array<Vec2, 2>{low, split} : std::array<Vec2, 2>{split, high};
+}
+
 /// A chunk's lists of the halves that it owns, in the order of triangles, edges and (canonical) halves.
 struct OwnedHalf {
   std::uint32_t half;   ///< halves * edge + half
@@ -73,13 +83,9 @@ Trace trace_edges(const Terrain& terrain, const EdgeTable& edges, double per_uni
           const InnerEdge place = Topology::outer(k, along ? half : Topology::kHalves - 1 - half);
           auto net =
               Pieces::Patch::template edge<double>(pieces.nets[static_cast<std::size_t>(place.piece)], place.side);
-          auto ends = Pieces::Patch::ends(pieces.frames[static_cast<std::size_t>(place.piece)], place.side);
-          if (!along) {
-            std::reverse(net.begin(), net.end());
-            std::swap(ends[0], ends[1]);
-          }
+          if (!along) std::reverse(net.begin(), net.end());
           const std::size_t before = chunk.roots.size();
-          isolate_edge<Topology::kDegree>(net, ends, levels, chunk.trace,
+          isolate_edge<Topology::kDegree>(net, half_ends<Topology>(terrain, edges, e, half), levels, chunk.trace,
                                           [&](const EdgeRoot& r) { chunk.roots.push_back(r); });
           if (chunk.roots.size() > before)
             chunk.halves.push_back(

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <numeric>
 #include <unordered_map>
 
 #include "retalho/core/atomic_file.h"
@@ -44,49 +45,68 @@ class Joiner {
     whole_.tolerance = index.max_error;
   }
 
-  void add(const Terrain& tile, const TileEntry& entry, const std::string& file) {
+  void add(const PlacedTile& placed, const std::string& file) {
+    const Terrain& tile = placed.terrain;
     whole_.gradient_kind = tile.gradient_kind;
     const bool smooth = !tile.gradients.empty();
-    const CellWindow& w = entry.cells;
     std::vector<std::uint32_t> number(tile.tin.vertex_count());
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      const auto column = w.column + std::llround(tile.tin.points[v].x / index_.cell_width);
-      const auto row = w.row + std::llround(-tile.tin.points[v].y / index_.cell_height);
-      const Vec2 gradient = smooth ? tile.gradients[v] : Vec2{};
-      const bool seam =
-          column == w.column || column == w.column + w.columns - 1 || row == w.row || row == w.row + w.rows - 1;
-      number[v] = vertex(row, column, seam, tile.tin.heights[v], gradient, smooth, file);
-    }
+    for (std::size_t v = 0; v < number.size(); ++v) number[v] = vertex(placed, v, smooth, file);
     for (const auto& t : tile.tin.triangles) whole_.tin.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
     if (!tile.edge_split.empty()) add_splits(tile, number, file);
-    for (int r = 0; r < w.rows; ++r)
-      for (int c = 0; c < w.columns; ++c)
-        if (tile.grid.valid.empty() || tile.grid.valid.get(c, r)) whole_.grid.valid.set(w.column + c, w.row + r, true);
+    const GridDomain& g = tile.grid;
+    for (int r = 0; r < g.rows; ++r)
+      for (int c = 0; c < g.columns; ++c)
+        if (g.valid.empty() || g.valid.get(c, r))
+          whole_.grid.valid.set(placed.first_column + c, placed.first_row + r, true);
   }
 
   Terrain take() {
     if (whole_.grid.valid.count() == static_cast<std::size_t>(index_.columns) * static_cast<std::size_t>(index_.rows))
       whole_.grid.valid = {};
+    const std::vector<std::uint32_t> former = sort_vertices();
     build_neighbors(whole_.tin);
     if (whole_.kind == SurfaceKind::powell_sabin)
       for (const auto& [a, b] : build_edges(whole_.tin).vertices)
-        whole_.edge_split.push_back(splits_.at(edge_key(a, b)));
+        whole_.edge_split.push_back(splits_.at(edge_key(former[a], former[b])));
     return std::move(whole_);
   }
 
  private:
-  static std::uint64_t edge_key(std::uint32_t low, std::uint32_t high) {
-    return (static_cast<std::uint64_t>(low) << 32) | high;
+  static std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+    return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
   }
 
-  /// Splits are counted from the end with the lower number, and the numbers are others here.
+  /// Brings the vertices into the order of their rows and columns; edges then run as they do in the tiles. Returns what
+  /// number each had.
+  std::vector<std::uint32_t> sort_vertices() {
+    Tin& tin = whole_.tin;
+    std::vector<std::uint32_t> former(tin.vertex_count()), number(former.size());
+    std::iota(former.begin(), former.end(), 0U);
+    std::sort(former.begin(), former.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const Vec2 p = tin.points[a], q = tin.points[b];
+      return p.y != q.y ? p.y > q.y : p.x < q.x;
+    });
+    for (std::uint32_t v = 0; v < former.size(); ++v) number[former[v]] = v;
+    const auto sorted = [&](const auto& values) {
+      auto out = values;
+      for (std::size_t v = 0; v < values.size(); ++v) out[v] = values[former[v]];
+      return out;
+    };
+    tin.points = sorted(tin.points);
+    tin.heights = sorted(tin.heights);
+    whole_.gradients = sorted(whole_.gradients);
+    for (auto& triangle : tin.triangles)
+      for (std::uint32_t& v : triangle) v = number[v];
+    return former;
+  }
+
+  /// Of edges, counted from the end whose cell comes first.
   void add_splits(const Terrain& tile, const std::vector<std::uint32_t>& number, const std::string& file) {
     const EdgeTable edges = build_edges(tile.tin);
     for (std::size_t e = 0; e < edges.vertices.size(); ++e) {
-      const std::uint32_t a = number[edges.vertices[e][0]], b = number[edges.vertices[e][1]];
-      const double split = a < b ? tile.edge_split[e] : 1 - tile.edge_split[e];
-      const auto [found, made] = splits_.emplace(edge_key(std::min(a, b), std::max(a, b)), split);
-      if (!made && !same_bits(found->second, split))
+      const std::uint64_t key = edge_key(number[edges.vertices[e][0]], number[edges.vertices[e][1]]);
+      const auto [found, made] = splits_.emplace(key, tile.edge_split[e]);
+      if (!made && !same_bits(found->second, tile.edge_split[e]))
         throw CannotRead(fmt::format("'{}' and its neighbour split an edge of their seam in two ways: make the tiled "
                                      "model again (retalho fit --tiles)",
                                      file),
@@ -94,15 +114,21 @@ class Joiner {
     }
   }
 
-  std::uint32_t vertex(long long row, long long column, bool seam, double height, Vec2 gradient, bool smooth,
-                       const std::string& file) {
+  std::uint32_t vertex(const PlacedTile& placed, std::size_t v, bool smooth, const std::string& file) {
+    const Terrain& tile = placed.terrain;
+    const GridDomain& g = tile.grid;
+    const Vec2 point = tile.tin.points[v], gradient = smooth ? tile.gradients[v] : Vec2{};
+    const auto column = std::llround(point.x / g.cell_width), row = std::llround(-point.y / g.cell_height);
+    const auto c = column - placed.first_column, r = row - placed.first_row;
+    const bool seam = c == 0 || c == g.columns - 1 || r == 0 || r == g.rows - 1;
     const auto next = static_cast<std::uint32_t>(whole_.tin.points.size());
     if (seam) {
       const std::uint64_t key = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column);
       const auto [found, made] = on_seams_.emplace(key, next);
       if (!made) {
         const std::uint32_t known = found->second;
-        if (!same_bits(whole_.tin.heights[known], height) || (smooth && !(whole_.gradients[known] == gradient)))
+        if (!same_bits(whole_.tin.heights[known], tile.tin.heights[v]) ||
+            (smooth && !(whole_.gradients[known] == gradient)))
           throw CannotRead(fmt::format("'{}' and its neighbour differ at their common cell ({}, {}): make the tiled "
                                        "model again (retalho fit --tiles)",
                                        file, column, row),
@@ -110,9 +136,8 @@ class Joiner {
         return known;
       }
     }
-    whole_.tin.points.push_back(
-        {static_cast<double>(column) * index_.cell_width, -static_cast<double>(row) * index_.cell_height});
-    whole_.tin.heights.push_back(height);
+    whole_.tin.points.push_back(point);
+    whole_.tin.heights.push_back(tile.tin.heights[v]);
     if (smooth) whole_.gradients.push_back(gradient);
     return next;
   }
@@ -120,7 +145,7 @@ class Joiner {
   const TiledIndex& index_;
   Terrain whole_;
   std::unordered_map<std::uint64_t, std::uint32_t> on_seams_;
-  std::unordered_map<std::uint64_t, double> splits_;  // Powell-Sabin: of edges, from the lower number
+  std::unordered_map<std::uint64_t, double> splits_;  // Powell-Sabin
 };
 
 }  // namespace
@@ -172,17 +197,70 @@ Terrain load_tile(const TiledIndex& index, const TileEntry& entry, const std::st
   return std::move(*terrain);
 }
 
-Terrain load_tiled_model(const std::string& folder) {
-  const TiledIndex index = read_tiled_index(folder);
+PlacedTile load_placed_tile(const TiledIndex& index, const TileEntry& entry, const std::string& folder) {
+  Terrain tile = load_tile(index, entry, folder);
+  for (Vec2& p : tile.tin.points) {
+    const auto column = entry.cells.column + std::llround(p.x / index.cell_width);
+    const auto row = entry.cells.row + std::llround(-p.y / index.cell_height);
+    p = {static_cast<double>(column) * index.cell_width, -static_cast<double>(row) * index.cell_height};
+  }
+  tile.georef = index.georef;
+  tile.grid.cell_width = index.cell_width;
+  tile.grid.cell_height = index.cell_height;
+  return {std::move(tile), entry.cells.column, entry.cells.row};
+}
+
+namespace {
+
+Terrain join_tiles(const TiledIndex& index, const std::string& folder) {
   Joiner joiner(index);
   bool any = false;
   for (const TileEntry& entry : index.tiles) {
     if (entry.file.empty()) continue;
     any = true;
-    joiner.add(load_tile(index, entry, folder), entry, path_in(folder, entry.file));
+    joiner.add(load_placed_tile(index, entry, folder), path_in(folder, entry.file));
   }
   if (!any) throw CannotRead(fmt::format("no tile of '{}' holds any data", folder), folder);
   return joiner.take();
+}
+
+/// The cells of all tiles of the index.
+CellWindow cells_of(const TiledIndex& index) {
+  CellWindow all{index.columns, index.rows, 0, 0};
+  int right = 0, bottom = 0;
+  for (const TileEntry& entry : index.tiles) {
+    const CellWindow& w = entry.cells;
+    all.column = std::min(all.column, w.column);
+    all.row = std::min(all.row, w.row);
+    right = std::max(right, w.column + w.columns);
+    bottom = std::max(bottom, w.row + w.rows);
+  }
+  all.columns = right - all.column;
+  all.rows = bottom - all.row;
+  return all;
+}
+
+}  // namespace
+
+Terrain load_tiled_model(const std::string& folder) {
+  return join_tiles(read_tiled_index(folder), folder);
+}
+
+Terrain load_tiled_part(const std::string& folder, const std::function<bool(const TileEntry&)>& wanted) {
+  TiledIndex part = read_tiled_index(folder);
+  std::erase_if(part.tiles, [&](const TileEntry& entry) { return !wanted(entry); });
+  if (part.tiles.empty()) throw BadInput(fmt::format("no tile of '{}' lies where it was asked for", folder), folder);
+  const CellWindow cells = cells_of(part);
+  const Vec2 corner = part.georef.to_crs({cells.column * part.cell_width, -cells.row * part.cell_height});
+  part.columns = cells.columns;
+  part.rows = cells.rows;
+  part.georef.origin_x = corner.x;
+  part.georef.origin_y = corner.y;
+  for (TileEntry& entry : part.tiles) {
+    entry.cells.column -= cells.column;
+    entry.cells.row -= cells.row;
+  }
+  return join_tiles(part, folder);
 }
 
 std::size_t model_size(const std::string& path) {

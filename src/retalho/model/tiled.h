@@ -6,12 +6,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "retalho/raster/window.h"
 #include "retalho/terrain/terrain.h"
+#include "retalho/terrain/tile_source.h"
 
 namespace retalho {
 
@@ -66,9 +68,19 @@ TiledIndex read_tiled_index(const std::string& folder);
 /// One tile, in coordinates of its own. Throws CannotRead: missing, or not the file that the index speaks of.
 Terrain load_tile(const TiledIndex& index, const TileEntry& entry, const std::string& folder);
 
-/// All tiles as one terrain on the whole grid. Throws CannotRead, also where tiles disagree along a seam.
-/// Memory: that of the model (about 150 bytes a vertex), and one bit a cell where the grid has voids.
+/// The same in coordinates of the whole, with the very points that load_tiled_model gives it; its grid is that of its
+/// own cells.
+PlacedTile load_placed_tile(const TiledIndex& index, const TileEntry& entry, const std::string& folder);
+
+/// All tiles as one terrain on the whole grid, vertices by row and column of their cells, triangles tile by tile.
+/// Throws CannotRead, also where tiles disagree along a seam. Memory: that of the model (about 150 bytes a vertex), and
+/// one bit a cell where the grid has voids.
 Terrain load_tiled_model(const std::string& folder);
+
+/// The tiles for which `wanted` is true, as one terrain on the smallest part of the grid that holds them, with the
+/// origin in that part's north-western cell; the other tiles of that part hold no data. Throws CannotRead, also
+/// where none of them has data, and BadInput where none is wanted. Memory: as load_tiled_model's, for those tiles.
+Terrain load_tiled_part(const std::string& folder, const std::function<bool(const TileEntry& tile)>& wanted);
 
 /// Size of a model file, or of all tiles of a tiled model. Throws CannotRead.
 std::size_t model_size(const std::string& path);

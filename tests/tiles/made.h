@@ -1,0 +1,49 @@
+// What the tests of tiled models are made of.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "retalho/raster/io.h"
+#include "retalho/tiles/plan.h"
+#include "support/support.h"
+
+namespace retalho::test {
+
+/// Hills with an odd cell size, so that products of cells round; `voids`: a lake across seams and one corner missing.
+inline Raster hills(int columns, int rows, bool voids) {
+  Raster raster;
+  raster.columns = columns;
+  raster.rows = rows;
+  raster.cell_width = 7.3;
+  raster.cell_height = 9.1;
+  raster.georef.origin_x = 500003.65;
+  raster.georef.origin_y = 4200004.55;
+  std::vector<double> heights(raster.cells());
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const bool lake = voids && (std::hypot(c - 40, r - 37) < 9 || (c > columns - 20 && r < 25));
+      heights[raster.index(c, r)] =
+          lake ? std::numeric_limits<double>::quiet_NaN()
+               : 80 * std::sin(c / 11.0) * std::cos(r / 9.0) + 30 * std::sin((c + 2 * r) / 17.0);
+    }
+  raster.heights = std::move(heights);
+  return raster;
+}
+
+struct MadeTiles {
+  test::ScratchFolder folder;
+  std::string dem = (folder.path() / "dem.tif").string(), tiles = (folder.path() / "tiles").string();
+  TilePlan plan;
+
+  explicit MadeTiles(bool voids, SurfaceKind surface = SurfaceKind::clough_tocher, double max_error = 1.5,
+                     bool fitted = false) {
+    write_raster(hills(131, 98, voids), dem);
+    plan = plan_tiles(dem, {.size = 40, .max_error = max_error, .surface = surface, .fitted = fitted});
+  }
+};
+
+}  // namespace retalho::test
