@@ -13,10 +13,14 @@
 #include "needs_in_space.h"
 #include "render_patches.h"
 #include "retalho/core/error.h"
+#include "retalho/level/tile_lines.h"
 #include "retalho/mesh/patch_mesh.h"
 #include "retalho/mesh/terrain_mesh.h"
 #include "retalho/mesh/tetraquad_mesh.h"
+#include "retalho/mesh/tile_mesh.h"
+#include "retalho/model/tiled.h"
 #include "retalho/patch/joins.h"
+#include "retalho/tiles/source.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -26,7 +30,54 @@ struct Options {
   std::string model, output;
   double tolerance = 0;
   GlobeFlags globe;
+  TileMemoryFlag tile_memory;
 };
+
+struct Made {
+  std::uint64_t vertices = 0, triangles = 0;
+  double tolerance = 0;
+  bool watertight = false;
+  MeshCheck check;
+};
+
+void print(const Program& program, const Made& made, const std::string& output) {
+  const nlohmann::ordered_json json = {{"vertices", made.vertices},
+                                       {"triangles", made.triangles},
+                                       {"tolerance", made.tolerance},
+                                       {"watertight", made.watertight},
+                                       {"boundary_edges", made.check.boundary_edges},
+                                       {"components", made.check.components},
+                                       {"bytes", std::filesystem::file_size(output)}};
+  if (program.json) return program.print(json);
+  program.print(list_text({{"vertices", json["vertices"].dump()},
+                           {"triangles", json["triangles"].dump()},
+                           {"tolerance", number_text(made.tolerance)},
+                           {"watertight", made.watertight ? "yes" : "no"},
+                           {"components", json["components"].dump()},
+                           {"bytes", json["bytes"].dump()}}));
+}
+
+void say_chosen(const Program& program, const Options& options, double tolerance) {
+  if (options.tolerance <= 0)
+    program.say(
+        fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)", tolerance));
+}
+
+/// A tiled model, tile by tile.
+void mesh_tiles(const Program& program, const Options& options, const Context& context) {
+  const TileSource tiles = tile_source(options.model, options.tile_memory.bytes());
+  const SurfaceRange range = measure_range(tiles, context);
+  if (!range.data) throw CannotRead(fmt::format("no tile of '{}' holds any data", options.model), options.model);
+  Made made;
+  made.tolerance = mesh_tolerance(range.low, range.high, {.tolerance = options.tolerance});
+  say_chosen(program, options, made.tolerance);
+  const TileMeshFacts facts = write_tile_mesh(tiles, made.tolerance, options.output, program.overwrite, context);
+  made.vertices = facts.vertices;
+  made.triangles = facts.triangles;
+  made.check = facts.check;
+  made.watertight = facts.check.watertight();
+  print(program, made, options.output);
+}
 
 void run(const Program& program, const Options& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
@@ -39,6 +90,7 @@ void run(const Program& program, const Options& options) {
         "DIR/tileset.json");
   check_output(program, options.output, {".ply", ".obj", ".stl", ".glb", ".xml", ".landxml"}, {options.model});
   const Context context = program.context();
+  if (is_tiled_model(options.model)) return mesh_tiles(program, options, context);
   const Model model = load_any_model(options.model);
   double tolerance = options.tolerance;
   std::optional<bool> joined;  // patches: what the plan view of check_mesh cannot tell
@@ -47,9 +99,7 @@ void run(const Program& program, const Options& options) {
         if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Terrain>) {
           check_terrain_need("meshing", shape, kVertexMeshed, 0, options.model);
           tolerance = mesh_tolerance(shape, {.tolerance = options.tolerance});
-          if (options.tolerance <= 0)
-            program.say(fmt::format("--tolerance {:.6g}: a thousandth of the height range (chosen, as none was given)",
-                                    tolerance));
+          say_chosen(program, options, tolerance);
           return mesh_terrain(shape, {.tolerance = tolerance}, context);
         } else if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, PatchSet>) {
           check_patches_need("meshing", shape.patches, 0, options.model);
@@ -83,22 +133,11 @@ void run(const Program& program, const Options& options) {
       model);
   context.check();
   const MeshCheck check = check_mesh(mesh);
-  const bool watertight = joined ? *joined && check.nonmanifold_edges == 0 : check.watertight();
   write_mesh(mesh, options.output, program.overwrite);
-  const nlohmann::ordered_json json = {{"vertices", mesh.positions.size()},
-                                       {"triangles", mesh.triangles.size()},
-                                       {"tolerance", tolerance},
-                                       {"watertight", watertight},
-                                       {"boundary_edges", check.boundary_edges},
-                                       {"components", check.components},
-                                       {"bytes", std::filesystem::file_size(options.output)}};
-  if (program.json) return program.print(json);
-  program.print(list_text({{"vertices", json["vertices"].dump()},
-                           {"triangles", json["triangles"].dump()},
-                           {"tolerance", number_text(tolerance)},
-                           {"watertight", watertight ? "yes" : "no"},
-                           {"components", json["components"].dump()},
-                           {"bytes", json["bytes"].dump()}}));
+  print(program,
+        {mesh.positions.size(), mesh.triangles.size(), tolerance,
+         joined ? *joined && check.nonmanifold_edges == 0 : check.watertight(), check},
+        options.output);
 }
 
 }  // namespace
@@ -111,7 +150,7 @@ void add_mesh(CLI::App& root, Program& program) {
                                   "retalho mesh dem.retalho -o survey.xml\n"
                                   "retalho mesh dem.retalho -o terrain/layer.json --tolerance 0.5\n"
                                   "retalho mesh dem.retalho -o tiles/tileset.json");
-  command->add_option("MODEL", options->model, "A .retalho file")->required()->type_name("");
+  command->add_option("MODEL", options->model, "A .retalho file or a tiled model")->required()->type_name("");
   command
       ->add_option("-o,--output", options->output,
                    "The mesh: .ply, .obj, .stl, .glb, .xml (LandXML); or a folder's layer.json (quantized-mesh) or "
@@ -120,6 +159,7 @@ void add_mesh(CLI::App& root, Program& program) {
       ->type_name("FILE");
   command->add_option("--tolerance", options->tolerance, "Largest distance to the surface (terrain: vertical)")
       ->type_name("T");
+  add_tile_memory_flag(*command, options->tile_memory);
   add_globe_flags(*command, options->globe);
   command->callback([options, &program] { run(program, *options); });
 }

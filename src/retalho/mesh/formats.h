@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <string_view>
 
 #include "retalho/mesh/mesh.h"
+#include "retalho/mesh/mesh_stream.h"
 
 namespace retalho {
 
@@ -44,11 +46,15 @@ class ByteSink {
   std::size_t used_ = 0;
 };
 
-void write_ply(const TriangleMesh& mesh, ByteSink& out);
-void write_obj(const TriangleMesh& mesh, ByteSink& out);
-void write_stl(const TriangleMesh& mesh, ByteSink& out);
-void write_glb(const TriangleMesh& mesh, ByteSink& out);
-void write_landxml(const TriangleMesh& mesh, ByteSink& out);
+/// Writes what `fill` gives to `path`, in the format that its ending names. Atomic. Throws as write_mesh does.
+void write_stream(const std::string& path, bool overwrite,
+                  const std::function<MeshStream(const std::string& temporary)>& fill);
+
+void write_ply(const MeshStream& mesh, ByteSink& out);
+void write_obj(const MeshStream& mesh, ByteSink& out);
+void write_stl(const MeshStream& mesh, ByteSink& out);
+void write_glb(const MeshStream& mesh, ByteSink& out);
+void write_landxml(const MeshStream& mesh, ByteSink& out);
 
 TriangleMesh read_ply(std::string_view bytes, const std::string& path);
 TriangleMesh read_obj(std::string_view bytes, const std::string& path);

@@ -6,6 +6,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/mesh/mesh.h"
+#include "retalho/mesh/open_edges.h"
 
 namespace retalho {
 namespace {
@@ -40,29 +41,6 @@ std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
   return sides;
 }
 
-std::size_t count_components(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  std::vector<bool> used(parent.size(), false);
-  for (const auto& v : mesh.triangles) {
-    for (const std::uint32_t k : v) used[k] = true;
-    parent[root(v[1])] = root(v[0]);
-    parent[root(v[2])] = root(v[0]);
-  }
-  std::size_t components = 0;
-  for (std::uint32_t v = 0; v < parent.size(); ++v) components += used[v] && root(v) == v;
-  return components;
-}
-
-/// An open edge as its triangle runs along it.
-struct OpenEdge {
-  Vec3 a, b;
-};
-
 /// Do the two run along each other, in opposite directions, by more than a point (seen from above)?
 bool runs_back(const OpenEdge& e, const OpenEdge& f) {
   constexpr double kShare = 1e-9;
@@ -75,6 +53,14 @@ bool runs_back(const OpenEdge& e, const OpenEdge& f) {
   const double from = dot(d, c + g - a) / length2, to = dot(d, c - a) / length2;  // f, turned round, in e's parameter
   return std::min(to, 1.0) - std::max(from, 0.0) > kShare;
 }
+
+bool degenerate(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& v) {
+  if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return true;
+  const Vec3 a = mesh.positions[v[0]];
+  return norm2(cross(mesh.positions[v[1]] - a, mesh.positions[v[2]] - a)) == 0;
+}
+
+}  // namespace
 
 /// Sweep over x with the edges that reach the sweep line kept by their strip of y.
 std::size_t count_cracks(std::vector<OpenEdge> edges) {
@@ -104,13 +90,29 @@ std::size_t count_cracks(std::vector<OpenEdge> edges) {
   return static_cast<std::size_t>(std::count(cracked.begin(), cracked.end(), true));
 }
 
-bool degenerate(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& v) {
-  if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return true;
-  const Vec3 a = mesh.positions[v[0]];
-  return norm2(cross(mesh.positions[v[1]] - a, mesh.positions[v[2]] - a)) == 0;
+std::vector<std::uint32_t> parts_of(const TriangleMesh& mesh, std::size_t& count) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<std::uint32_t> part(parent.size(), kNoPart);
+  for (const auto& v : mesh.triangles) {
+    for (const std::uint32_t k : v) part[k] = 0;
+    parent[root(v[1])] = root(v[0]);
+    parent[root(v[2])] = root(v[0]);
+  }
+  std::vector<std::uint32_t> number(parent.size(), kNoPart);
+  count = 0;
+  for (std::uint32_t v = 0; v < parent.size(); ++v) {
+    if (part[v] == kNoPart) continue;
+    std::uint32_t& n = number[root(v)];
+    if (n == kNoPart) n = static_cast<std::uint32_t>(count++);
+    part[v] = n;
+  }
+  return part;
 }
-
-}  // namespace
 
 MeshCheck check_mesh(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -135,7 +137,7 @@ MeshCheck check_mesh(const TriangleMesh& mesh) {
   check.open_edges = open.size();
   check.cracks = count_cracks(std::move(open));
   check.boundary_edges = check.open_edges - check.cracks;
-  check.components = count_components(mesh);
+  parts_of(mesh, check.components);
   return check;
 }
 

@@ -9,6 +9,7 @@
 #include "retalho/core/error.h"
 #include "retalho/core/memory.h"
 #include "retalho/core/parallel.h"
+#include "retalho/mesh/mesh_frame.h"
 #include "retalho/mesh/patch_cutter.h"
 #include "retalho/terrain/creases.h"
 
@@ -26,32 +27,8 @@ Vec3 raised(Vec2 p, double z) {
   return {p.x, p.y, z};
 }
 
-Vec3 offset_of(const Georef& georef) {
-  const bool shifted_only = !georef.geographic && georef.scale_x == 1 && georef.scale_y == 1;
-  return shifted_only ? Vec3{georef.origin_x, georef.origin_y, 0} : Vec3{};
-}
-
 Vec2 centre_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
-}
-
-/// Leaves out vertices of no triangle.
-void drop_unused_vertices(TriangleMesh& mesh) {
-  std::vector<std::uint32_t> place(mesh.positions.size(), kNone);
-  for (const auto& v : mesh.triangles)
-    for (const std::uint32_t k : v) place[k] = 0;
-  std::uint32_t kept = 0;
-  for (std::size_t v = 0; v < place.size(); ++v) {
-    if (place[v] == kNone) continue;
-    mesh.positions[kept] = mesh.positions[v];
-    mesh.normals[kept] = mesh.normals[v];
-    place[v] = kept++;
-  }
-  if (kept == mesh.positions.size()) return;
-  mesh.positions.resize(kept);
-  mesh.normals.resize(kept);
-  for (auto& v : mesh.triangles)
-    for (std::uint32_t& k : v) k = place[k];
 }
 
 TriangleMesh linear_mesh(const Terrain& terrain) {
@@ -333,14 +310,45 @@ class SmoothMesher {
 
 }  // namespace
 
+void drop_unused_vertices(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> place(mesh.positions.size(), kNone);
+  for (const auto& v : mesh.triangles)
+    for (const std::uint32_t k : v) place[k] = 0;
+  std::uint32_t kept = 0;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (place[v] == kNone) continue;
+    mesh.positions[kept] = mesh.positions[v];
+    mesh.normals[kept] = mesh.normals[v];
+    place[v] = kept++;
+  }
+  if (kept == mesh.positions.size()) return;
+  mesh.positions.resize(kept);
+  mesh.normals.resize(kept);
+  for (auto& v : mesh.triangles)
+    for (std::uint32_t& k : v) k = place[k];
+}
+
+MeshFrame mesh_frame(const Georef& georef) {
+  const bool metres = georef.scale_x == 1 && georef.scale_y == 1;
+  MeshFrame frame;
+  if (metres && !georef.geographic) frame.offset = {georef.origin_x, georef.origin_y, 0};
+  frame.unit = georef.unit == "unit" ? "" : georef.unit;
+  if (metres) frame.crs_wkt = georef.crs_wkt;
+  return frame;
+}
+
 double mesh_tolerance(const Terrain& terrain, const TerrainMeshOptions& options) {
   const auto& heights = terrain.tin.heights;
   if (heights.empty()) throw BadInput("a terrain without vertices has no mesh");
   const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-  const double largest = std::max(std::abs(*low), std::abs(*high));
+  return mesh_tolerance(*low, *high, options);
+}
+
+double mesh_tolerance(double low, double high, const TerrainMeshOptions& options) {
+  const double largest = std::max(std::abs(low), std::abs(high));
   if (!(options.tolerance >= 0) || std::isinf(options.tolerance))
     throw UsageError(fmt::format("a tolerance of {}: give a height greater than 0", options.tolerance));
-  if (options.tolerance == 0) return *high > *low ? (*high - *low) / 1000 : std::max(largest, 1.0) / 1000;
+  if (options.tolerance == 0) return high > low ? (high - low) / 1000 : std::max(largest, 1.0) / 1000;
   if (options.tolerance < 1e-12 * largest)
     throw UsageError(fmt::format("a tolerance of {} is finer than the digits of heights around {}: give a larger one",
                                  options.tolerance, largest));
@@ -362,9 +370,10 @@ TriangleMesh mesh_terrain(const Terrain& terrain, const TerrainMeshOptions& opti
       break;
   }
   drop_unused_vertices(mesh);
-  mesh.offset = offset_of(terrain.georef);
-  mesh.unit = terrain.georef.unit == "unit" ? "" : terrain.georef.unit;
-  if (terrain.georef.scale_x == 1 && terrain.georef.scale_y == 1) mesh.crs_wkt = terrain.georef.crs_wkt;
+  const MeshFrame frame = mesh_frame(terrain.georef);
+  mesh.offset = frame.offset;
+  mesh.unit = frame.unit;
+  mesh.crs_wkt = frame.crs_wkt;
   context.report("mesh", 1);
   return mesh;
 }

@@ -15,6 +15,8 @@ struct TerrainMeshOptions {
 /// Throws UsageError for one that is negative, not a number, or too small for doubles to tell (under 1e-12 of the
 /// heights).
 double mesh_tolerance(const Terrain& terrain, const TerrainMeshOptions& options);
+/// The same for vertices from `low` to `high`.
+double mesh_tolerance(double low, double high, const TerrainMeshOptions& options);
 
 /// The surface as flat triangles whose vertices lie on it.
 ///

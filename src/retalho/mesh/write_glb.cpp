@@ -18,19 +18,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint32_t kGlb = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 constexpr int kFloat = 5126, kUnsigned = 5125, kArrayBuffer = 34962, kElementBuffer = 34963;
 
-struct Box {
-  Vec3 low, high;
-};
-
-Box box_of(const std::vector<Vec3>& points) {
-  Box box{points.front(), points.front()};
-  for (const Vec3& p : points) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  }
-  return box;
-}
-
 std::array<float, 3> single(Vec3 p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
@@ -48,10 +35,10 @@ struct Plan {
   }
 };
 
-Plan describe(const TriangleMesh& mesh, const Box& box, Vec3 centre) {
+Plan describe(const MeshStream& mesh, Vec3 centre) {
   Plan plan;
   Json& d = plan.document;
-  const std::size_t n = mesh.positions.size();
+  const std::uint64_t n = mesh.vertices;
   d["asset"] = {{"version", "2.0"}, {"generator", "retalho"}};
   d["scene"] = 0;
   d["scenes"] = Json::array({{{"nodes", {0}}}});
@@ -68,19 +55,19 @@ Plan describe(const TriangleMesh& mesh, const Box& box, Vec3 centre) {
            {{"componentType", kFloat},
             {"count", n},
             {"type", "VEC3"},
-            {"min", single(box.low - centre)},
-            {"max", single(box.high - centre)}});
-  if (!mesh.normals.empty()) {
+            {"min", single(mesh.low - centre)},
+            {"max", single(mesh.high - centre)}});
+  if (mesh.normals) {
     attributes["NORMAL"] = d["accessors"].size();
     plan.add(n * 12, kArrayBuffer, {{"componentType", kFloat}, {"count", n}, {"type", "VEC3"}});
   }
-  if (!mesh.texture.empty()) {
+  if (mesh.texture) {
     attributes["TEXCOORD_0"] = d["accessors"].size();
     plan.add(n * 8, kArrayBuffer, {{"componentType", kFloat}, {"count", n}, {"type", "VEC2"}});
   }
   const std::size_t indices = d["accessors"].size();
-  plan.add(mesh.triangles.size() * 12, kElementBuffer,
-           {{"componentType", kUnsigned}, {"count", mesh.triangles.size() * 3}, {"type", "SCALAR"}});
+  plan.add(mesh.triangles * 12, kElementBuffer,
+           {{"componentType", kUnsigned}, {"count", mesh.triangles * 3}, {"type", "SCALAR"}});
   d["materials"] = Json::array(
       {{{"name", "surface"},
         {"doubleSided", true},
@@ -95,11 +82,10 @@ Plan describe(const TriangleMesh& mesh, const Box& box, Vec3 centre) {
 
 }  // namespace
 
-void write_glb(const TriangleMesh& mesh, ByteSink& out) {
-  if (mesh.triangles.empty()) throw CannotWrite("a glTF file cannot hold a mesh without triangles");
-  const Box box = box_of(mesh.positions);
-  const Vec3 centre = 0.5 * (box.low + box.high);
-  const Plan plan = describe(mesh, box, centre);
+void write_glb(const MeshStream& mesh, ByteSink& out) {
+  if (mesh.triangles == 0) throw CannotWrite("a glTF file cannot hold a mesh without triangles");
+  const Vec3 centre = 0.5 * (mesh.low + mesh.high);
+  const Plan plan = describe(mesh, centre);
   std::string text = plan.document.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + text.size() + 8 + plan.bytes;  // every part of the buffer is a multiple of 4
@@ -115,15 +101,25 @@ void write_glb(const TriangleMesh& mesh, ByteSink& out) {
   const auto put = [&](std::array<float, 3> v) {
     for (const float x : v) out.binary(x);
   };
-  for (const Vec3& p : mesh.positions) put(single(p - centre));
-  for (const Vec3& n : mesh.normals) put(single(n));
-  for (const Vec2& t : mesh.texture) {
-    // glTF's texture origin is the upper left corner, ours the lower left.
-    out.binary(static_cast<float>(t.x));
-    out.binary(static_cast<float>(1 - t.y));
-  }
-  for (const auto& v : mesh.triangles)
-    for (const std::uint32_t k : v) out.binary(k);
+  mesh.each_vertex([&](const VertexBlock& block) {
+    for (const Vec3& p : block.positions) put(single(p - centre));
+  });
+  if (mesh.normals)
+    mesh.each_vertex([&](const VertexBlock& block) {
+      for (const Vec3& n : block.normals) put(single(n));
+    });
+  if (mesh.texture)
+    mesh.each_vertex([&](const VertexBlock& block) {
+      for (const Vec2& t : block.texture) {
+        // glTF's texture origin is the upper left corner, ours the lower left.
+        out.binary(static_cast<float>(t.x));
+        out.binary(static_cast<float>(1 - t.y));
+      }
+    });
+  mesh.each_triangle([&](TriangleBlock block) {
+    for (const auto& v : block)
+      for (const std::uint32_t k : v) out.binary(k);
+  });
 }
 
 }  // namespace retalho

@@ -47,8 +47,8 @@ std::string units_of(const std::string& unit) {
 
 }  // namespace
 
-void write_landxml(const TriangleMesh& mesh, ByteSink& out) {
-  if (mesh.triangles.empty()) throw CannotWrite("a LandXML surface cannot be without triangles");
+void write_landxml(const MeshStream& mesh, ByteSink& out) {
+  if (mesh.triangles == 0) throw CannotWrite("a LandXML surface cannot be without triangles");
   const bool known = mesh.unit == "metre" || mesh.unit == "foot" || mesh.unit == "US survey foot";
   if (!known && !mesh.unit.empty() && mesh.unit != "unit")
     throw CannotWrite(
@@ -67,20 +67,25 @@ void write_landxml(const TriangleMesh& mesh, ByteSink& out) {
   out.text("<Application name=\"retalho\"/>\n<Surfaces>\n<Surface name=\"surface\"");
   if (!known) out.text(" desc=\"the unit of the coordinates is not known: metres are assumed\"");
   out.text(">\n<Definition surfType=\"TIN\">\n<Pnts>\n");
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3 p = mesh.positions[v] + mesh.offset;
-    out.text("<P id=\""), out.number(static_cast<std::uint64_t>(v + 1)), out.text("\">");
-    out.number(p.y), out.text(" "), out.number(p.x), out.text(" "), out.number(p.z), out.text("</P>\n");
-  }
-  out.text("</Pnts>\n<Faces>\n");
-  for (const auto& t : mesh.triangles) {
-    out.text("<F>");
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (k > 0) out.text(" ");
-      out.number(static_cast<std::uint64_t>(t[k]) + 1);
+  std::uint64_t number = 0;
+  mesh.each_vertex([&](const VertexBlock& block) {
+    for (const Vec3& local : block.positions) {
+      const Vec3 p = local + mesh.offset;
+      out.text("<P id=\""), out.number(++number), out.text("\">");
+      out.number(p.y), out.text(" "), out.number(p.x), out.text(" "), out.number(p.z), out.text("</P>\n");
     }
-    out.text("</F>\n");
-  }
+  });
+  out.text("</Pnts>\n<Faces>\n");
+  mesh.each_triangle([&](TriangleBlock block) {
+    for (const auto& t : block) {
+      out.text("<F>");
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (k > 0) out.text(" ");
+        out.number(std::uint64_t{t[k]} + 1);
+      }
+      out.text("</F>\n");
+    }
+  });
   out.text("</Faces>\n</Definition>\n</Surface>\n</Surfaces>\n</LandXML>\n");
 }
 

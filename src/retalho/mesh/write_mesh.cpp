@@ -12,7 +12,7 @@
 namespace retalho {
 namespace {
 
-using Writer = void (*)(const TriangleMesh&, ByteSink&);
+using Writer = void (*)(const MeshStream&, ByteSink&);
 struct Format {
   const char* extension;
   Writer write;
@@ -61,14 +61,43 @@ bool is_mesh_name(const std::string& path) {
   return find_format(path) != nullptr;
 }
 
-void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite) {
+void widen(Vec3& low, Vec3& high, Vec3 point) {
+  low = {std::min(low.x, point.x), std::min(low.y, point.y), std::min(low.z, point.z)};
+  high = {std::max(high.x, point.x), std::max(high.y, point.y), std::max(high.z, point.z)};
+}
+
+MeshStream stream_of(const TriangleMesh& mesh) {
+  MeshStream stream;
+  stream.vertices = mesh.positions.size();
+  stream.triangles = mesh.triangles.size();
+  stream.normals = !mesh.normals.empty();
+  stream.texture = !mesh.texture.empty();
+  if (!mesh.positions.empty()) stream.low = stream.high = mesh.positions.front();
+  for (const Vec3& p : mesh.positions) widen(stream.low, stream.high, p);
+  stream.offset = mesh.offset;
+  stream.unit = mesh.unit;
+  stream.crs_wkt = mesh.crs_wkt;
+  stream.each_vertex = [&mesh](const auto& take) { take({mesh.positions, mesh.normals, mesh.texture}); };
+  stream.each_triangle = [&mesh](const auto& take) { take(mesh.triangles); };
+  stream.position = [&mesh](std::uint32_t v) { return mesh.positions[v]; };
+  return stream;
+}
+
+void write_stream(const std::string& path, bool overwrite,
+                  const std::function<MeshStream(const std::string& temporary)>& fill) {
   const Format& format = format_of(path);
-  check_arrays(mesh, path);
   AtomicFile file(path, overwrite);
+  const MeshStream mesh = fill(file.temporary());
   ByteSink out(file.temporary(), path);
   format.write(mesh, out);
   out.close();
   file.commit();
+}
+
+void write_mesh(const TriangleMesh& mesh, const std::string& path, bool overwrite) {
+  format_of(path);  // a name without a format is said before anything else
+  check_arrays(mesh, path);
+  write_stream(path, overwrite, [&](const std::string&) { return stream_of(mesh); });
 }
 
 std::string encode_mesh(const TriangleMesh& mesh, const std::string& extension) {
@@ -77,7 +106,7 @@ std::string encode_mesh(const TriangleMesh& mesh, const std::string& extension) 
   check_arrays(mesh, name);
   std::string bytes;
   ByteSink out(bytes);
-  format.write(mesh, out);
+  format.write(stream_of(mesh), out);
   out.close();
   return bytes;
 }

@@ -3,30 +3,39 @@
 
 namespace retalho {
 
-void write_obj(const TriangleMesh& mesh, ByteSink& out) {
-  const bool normals = !mesh.normals.empty(), texture = !mesh.texture.empty();
+void write_obj(const MeshStream& mesh, ByteSink& out) {
   const auto line = [&](std::string_view keyword, std::initializer_list<double> values) {
     out.text(keyword);
     for (const double v : values) out.text(" "), out.number(v);
     out.text("\n");
   };
   out.text("# retalho\n");
-  for (const Vec3& local : mesh.positions) {
-    const Vec3 p = local + mesh.offset;
-    line("v", {p.x, p.y, p.z});
-  }
-  for (const Vec2& t : mesh.texture) line("vt", {t.x, t.y});
-  for (const Vec3& n : mesh.normals) line("vn", {n.x, n.y, n.z});
-  for (const auto& triangle : mesh.triangles) {
-    out.text("f");
-    for (const std::uint32_t k : triangle) {
-      const std::uint64_t number = std::uint64_t{k} + 1;
-      out.text(" "), out.number(number);
-      if (texture) out.text("/"), out.number(number);
-      if (normals) out.text(texture ? "/" : "//"), out.number(number);
+  mesh.each_vertex([&](const VertexBlock& block) {
+    for (const Vec3& local : block.positions) {
+      const Vec3 p = local + mesh.offset;
+      line("v", {p.x, p.y, p.z});
     }
-    out.text("\n");
-  }
+  });
+  if (mesh.texture)
+    mesh.each_vertex([&](const VertexBlock& block) {
+      for (const Vec2& t : block.texture) line("vt", {t.x, t.y});
+    });
+  if (mesh.normals)
+    mesh.each_vertex([&](const VertexBlock& block) {
+      for (const Vec3& n : block.normals) line("vn", {n.x, n.y, n.z});
+    });
+  mesh.each_triangle([&](TriangleBlock block) {
+    for (const auto& triangle : block) {
+      out.text("f");
+      for (const std::uint32_t k : triangle) {
+        const std::uint64_t number = std::uint64_t{k} + 1;
+        out.text(" "), out.number(number);
+        if (mesh.texture) out.text("/"), out.number(number);
+        if (mesh.normals) out.text(mesh.texture ? "/" : "//"), out.number(number);
+      }
+      out.text("\n");
+    }
+  });
 }
 
 }  // namespace retalho
