@@ -43,7 +43,11 @@ void check_file_need(const std::string& work, double bytes_a_byte, const std::st
 
 void check_terrain_need(const std::string& work, const Terrain& terrain, double a_vertex, double more,
                         const std::string& file) {
-  const std::size_t vertices = terrain.tin.vertex_count();
+  check_vertex_need(work, terrain.tin.vertex_count(), a_vertex, more, file);
+}
+
+void check_vertex_need(const std::string& work, std::size_t vertices, double a_vertex, double more,
+                       const std::string& file) {
   check_memory(kProcessMemory + a_vertex * static_cast<double>(vertices) + more,
                fmt::format("{} a model of {} vertices", work, vertices), file);
 }

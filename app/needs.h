@@ -26,6 +26,8 @@ void check_file_need(const std::string& work, double bytes_a_byte, const std::st
 /// The same for work on a terrain in memory: bytes a vertex, the model's own included, and more.
 void check_terrain_need(const std::string& work, const Terrain& terrain, double a_vertex, double more,
                         const std::string& file);
+void check_vertex_need(const std::string& work, std::size_t vertices, double a_vertex, double more,
+                       const std::string& file);
 
 // Bytes.
 inline constexpr double kVertexFitted = 300;  ///< fit: triangulation, surface, file in memory

@@ -10,12 +10,14 @@
 #include "inputs.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
+#include "retalho/model/tiled.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/visibility/intervisibility.h"
 #include "retalho/visibility/line_of_sight.h"
 #include "retalho/visibility/surface_viewshed.h"
 #include "retalho/visibility/viewshed.h"
 #include "sight_line.h"
+#include "viewshed_tiles.h"
 
 namespace retalho::app {
 namespace {
@@ -31,25 +33,8 @@ struct Options {
   std::vector<double> azimuth, vertical;
   bool curvature = false, intervisibility = false, exact = false;
   int directions = 180, stride = 0;
+  TileMemoryFlag tile_memory;
 };
-
-/// The grid, or the model sampled at the cells of the grid that it was made from.
-Raster load_heights(const Program& program, const Options& options, const Context& context) {
-  if (!is_model_file(options.input)) {
-    RasterSummary summary;
-    return load_grid(program, options.input, options.grid, summary, context,
-                     {"the map of", options.intervisibility ? kCellIntervisible : kCellSeen, 0});
-  }
-  const Terrain terrain = load_terrain(options.input);
-  const double cells = static_cast<double>(terrain.grid.columns) * terrain.grid.rows;
-  check_terrain_need("the map of", terrain, kVertexLoaded,
-                     cells * (sizeof(double) + (options.intervisibility ? kCellIntervisible : kCellSeen)),
-                     options.input);
-  Raster raster = raster_of_cells(TerrainEvaluator(terrain, context), context);
-  program.say(
-      fmt::format("{}: the model at the {} x {} cells of its grid", options.input, raster.columns, raster.rows));
-  return raster;
-}
 
 /// Where the observers stand, as the options say it: X,Y or X,Y,HEIGHT in the CRS.
 struct Place {
@@ -65,6 +50,39 @@ Place parse_place(const std::string& text, double height) {
   if (last.empty() || *end != '\0' || !std::isfinite(height))
     throw UsageError(fmt::format("--observer '{}': expected X,Y or X,Y,HEIGHT", text), {}, "--observer");
   return {parse_point("--observer", text.substr(0, second)), height};
+}
+
+SightPlaces places_of(const Options& options) {
+  SightPlaces places;
+  for (const std::string& text : options.observers) places.observers.push_back(parse_place(text, 0).crs);
+  if (!options.to.empty()) places.target = parse_point("--to", options.to);
+  places.radius = options.radius;
+  return places;
+}
+
+/// The grid, or the model sampled at the cells of the grid that it was made from.
+Raster load_heights(const Program& program, const Options& options, const Context& context) {
+  if (!is_model_file(options.input)) {
+    RasterSummary summary;
+    return load_grid(program, options.input, options.grid, summary, context,
+                     {"the map of", options.intervisibility ? kCellIntervisible : kCellSeen, 0});
+  }
+  if (is_tiled_model(options.input)) {
+    TileReader reader(options.input, options.tile_memory.bytes());
+    SightPlaces places;
+    if (!options.intervisibility) places = places_of(options);
+    return cells_in_reach(program, reader, options.input, places,
+                          options.intervisibility ? kCellIntervisible : kCellSeen, context);
+  }
+  const Terrain terrain = load_terrain(options.input);
+  const double cells = static_cast<double>(terrain.grid.columns) * terrain.grid.rows;
+  check_terrain_need("the map of", terrain, kVertexLoaded,
+                     cells * (sizeof(double) + (options.intervisibility ? kCellIntervisible : kCellSeen)),
+                     options.input);
+  Raster raster = raster_of_cells(TerrainEvaluator(terrain, context), context);
+  program.say(
+      fmt::format("{}: the model at the {} x {} cells of its grid", options.input, raster.columns, raster.rows));
+  return raster;
 }
 
 void check_metres(const Program& program, const Georef& georef) {
@@ -89,6 +107,10 @@ ViewshedOptions field_of(const Options& options) {
   field.refraction = options.refraction;
   field.voids = static_cast<VoidRule>(choose("--void", options.voids, kVoid));
   return field;
+}
+
+SightOptions sight_of(const Options& options) {
+  return {options.target_height, options.frequency, options.curvature, options.refraction, field_of(options).voids};
 }
 
 /// Writes the map that `raster` has become, and says how long it took.
@@ -178,9 +200,24 @@ std::vector<float> result_of_needed(std::vector<float> needed, double target_hei
   return needed;
 }
 
+/// A sight line over the cells of a tiled model, of which no more are read than lie beside it.
+void run_tiled_line(const Program& program, const Options& options, const Context& context) {
+  context.check();
+  TileReader reader(options.input, options.tile_memory.bytes());
+  const CellHeights cells = cells_of(reader);
+  if (options.curvature || options.frequency > 0) check_metres(program, cells.georef);
+  const Place place = parse_place(options.observers.front(), options.observer_height);
+  const Observer observer = observer_at(cells, place.crs, place.height);
+  const Observer target = observer_at(cells, parse_point("--to", options.to), 0);
+  const SightLine line = line_of_sight(cells, observer, target.column, target.row, sight_of(options));
+  program.say(fmt::format("{}: {} of {} tiles read", options.input, reader.reads(), reader.index().tiles.size()));
+  report_sight_line(program, line, cells.georef, options.frequency > 0, options.output);
+}
+
 /// On cells: of the grid, or of the model's own grid.
 void run_cells(const Program& program, const Options& options, const Stopwatch& watch) {
   const Context context = program.context();
+  if (!options.to.empty() && is_tiled_model(options.input)) return run_tiled_line(program, options, context);
   Raster raster = load_heights(program, options, context);
   if (options.curvature || options.frequency > 0) check_metres(program, raster.georef);
   std::vector<Observer> observers;
@@ -191,11 +228,9 @@ void run_cells(const Program& program, const Options& options, const Stopwatch& 
   const ViewshedOptions field = field_of(options);
   if (!options.to.empty()) {
     const Observer target = observer_at(raster, parse_point("--to", options.to), 0);
-    return report_sight_line(
-        program,
-        line_of_sight(raster, observers.front(), target.column, target.row,
-                      {options.target_height, options.frequency, options.curvature, options.refraction, field.voids}),
-        raster.georef, options.frequency > 0, options.output);
+    return report_sight_line(program,
+                             line_of_sight(raster, observers.front(), target.column, target.row, sight_of(options)),
+                             raster.georef, options.frequency > 0, options.output);
   }
   std::size_t seen = 0;
   const std::size_t what = choose("--what", options.what, kWhat);
@@ -215,7 +250,8 @@ void run_surface(const Program& program, const Options& options, const Stopwatch
         fmt::format("--exact asks for a model, and '{}' is none: fit the grid first (retalho fit)", options.input),
         options.input, "--exact");
   const Context context = program.context();
-  const Terrain terrain = load_terrain(options.input);
+  const Terrain terrain = is_tiled_model(options.input) ? tiles_in_reach(program, options.input, places_of(options))
+                                                        : load_terrain(options.input);
   check_terrain_need("the map of", terrain, kVertexLoaded,
                      static_cast<double>(terrain.grid.columns) * terrain.grid.rows * (sizeof(double) + kCellSeen),
                      options.input);
@@ -229,10 +265,7 @@ void run_surface(const Program& program, const Options& options, const Stopwatch
   const ViewshedOptions field = field_of(options);
   if (!options.to.empty()) {
     const Vec2 target = terrain.georef.to_local(parse_point("--to", options.to));
-    return report_sight_line(program,
-                             surface_line_of_sight(evaluator, observers.front(), target,
-                                                   {options.target_height, options.frequency, options.curvature,
-                                                    options.refraction, field.voids}),
+    return report_sight_line(program, surface_line_of_sight(evaluator, observers.front(), target, sight_of(options)),
                              terrain.georef, options.frequency > 0, options.output);
   }
   std::size_t seen = 0;
@@ -318,6 +351,7 @@ void add_viewshed(CLI::App& root, Program& program) {
       ->check(above_zero());
   command->add_option("--directions", options->directions, "Of --intervisibility (default 180)")
       ->check(CLI::Range(4, 3600));
+  add_tile_memory_flag(*command, options->tile_memory);
   add_grid_flags(*command, options->grid);
   command->callback([&program, options] { run(program, *options); });
 }

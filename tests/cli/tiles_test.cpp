@@ -56,6 +56,86 @@ TEST(FitTiles, EveryCommandTakesTheFolder) {
   for (std::size_t i = 0; i < dem.cells(); ++i) ASSERT_NEAR(sampled.at(i), dem.at(i), 3.001);
 }
 
+TEST(FitTiles, LinesAndMeshesAreTheSameBytesFromAnyNumberOfThreadsAndAnyBound) {
+  const Tiles folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 -q").code, 0);
+  for (const char* command : {"contour m -o {}.shp --interval 20 --json", "mesh m -o {}.ply --tolerance 1 --json"}) {
+    const bool lines = std::string(command).starts_with("contour");
+    std::string expected;
+    nlohmann::json said;
+    for (const char* how : {"--threads 1", "--threads 2", "--threads 7", "--threads 7 --tile-memory 1"}) {
+      const Outcome made = run(folder, fmt::format(fmt::runtime(command), "out") + " --overwrite " + how);
+      ASSERT_EQ(made.code, 0) << made.err;
+      const std::string bytes = slurp(folder / (lines ? "out.shp" : "out.ply"));
+      if (expected.empty()) {
+        expected = bytes;
+        said = made.json();
+      }
+      EXPECT_TRUE(bytes == expected) << how;
+      EXPECT_EQ(made.json()[lines ? "lines" : "triangles"], said[lines ? "lines" : "triangles"]);
+    }
+    EXPECT_GT(said[lines ? "lines" : "triangles"].get<int>(), 10);
+  }
+  EXPECT_EQ(run(folder, "contour m -o l.gpkg --interval 20 --tile-memory 0").code, 2);
+  EXPECT_EQ(run(folder, "mesh m -o l.ply --tile-memory 0").code, 2);
+  EXPECT_EQ(run(folder, "viewshed m -o l.tif --observer 1505,2305 --tile-memory 0").code, 2);
+  EXPECT_EQ(run(folder, "contour m -o l.gpkg --interval 20 --surface linear").code, 2);
+  // What wants the whole surface joins it.
+  for (const char* options : {"-o b.gpkg --bands", "-o m.svg", "-o m.pdf --bands --curves"})
+    EXPECT_EQ(run(folder, std::string("contour m --interval 20 ") + options).code, 0) << options;
+  EXPECT_EQ(run(folder, "contour m -o c.json --interval 20 --conics").code, 2) << "not a Powell-Sabin model";
+}
+
+TEST(FitTiles, ViewshedsReadTheTilesThatTheyNeed) {
+  const Tiles folder;
+  ASSERT_EQ(run(folder, "fit dem.asc -o m --tiles 32 --max-error 3 -q").code, 0);
+  const auto reads = [](const Outcome& outcome) {
+    const std::size_t at = outcome.err.find(" of 9 tiles read");
+    return at == std::string::npos ? -1 : outcome.err[at - 1] - '0';
+  };
+  // A sight line over cells, and over the surface itself.
+  for (const char* exact : {"", " --exact"}) {
+    const std::string line = "viewshed m --observer 1055,2605 --to 1255,2505 --json" + std::string(exact);
+    const Outcome seen = run(folder, line);
+    ASSERT_EQ(seen.code, 0) << seen.err;
+    EXPECT_GE(reads(seen), 1) << seen.err;
+    EXPECT_LE(reads(seen), 4) << seen.err;
+    const double distance = seen.json()["distance"];
+    EXPECT_NEAR(distance, std::hypot(200, 100), 1e-6);
+  }
+  // A map within a radius is that part of the whole map.
+  ASSERT_EQ(run(folder, "viewshed m -o all.tif --observer 1205,2405").code, 0);
+  const Raster all = read_raster(folder / "all.tif");
+  EXPECT_EQ(all.columns, 90);
+  for (const char* exact : {"", " --exact"}) {
+    const Outcome part =
+        run(folder, "viewshed m -o part.tif --overwrite --observer 1205,2405 --radius 90 --json" + std::string(exact));
+    ASSERT_EQ(part.code, 0) << part.err;
+    EXPECT_GE(reads(part), 1) << part.err;
+    EXPECT_LE(reads(part), 4) << part.err;
+    const Raster some = read_raster(folder / "part.tif");
+    EXPECT_LT(some.cells(), all.cells());
+    std::size_t within = 0, differing = 0;
+    for (int r = 0; r < some.rows; ++r)
+      for (int c = 0; c < some.columns; ++c) {
+        const Vec2 crs = some.georef.to_crs(some.centre(c, r));
+        const Vec2 local = all.georef.to_local(crs);
+        const auto column = static_cast<int>(std::lround(local.x / 10)),
+                   row = static_cast<int>(std::lround(-local.y / 10));
+        if (std::hypot(crs.x - 1205, crs.y - 2405) > 90) {
+          EXPECT_EQ(some.at(c, r), 0) << "beyond the radius";
+          continue;
+        }
+        ++within;
+        differing += some.at(c, r) == all.at(column, row) ? 0 : 1;
+      }
+    EXPECT_GT(within, 200U);
+    EXPECT_LE(differing, *exact == 0 ? 2U : within / 10) << "cells and surface are two things";
+  }
+  EXPECT_EQ(run(folder, "viewshed m -o x.tif --observer 5,5").code, 3) << "outside";
+  EXPECT_EQ(run(folder, "viewshed m -o x.tif --exact --observer 5,5 --radius 10").code, 3);
+}
+
 TEST(FitTiles, BudgetsSurfacesAndFits) {
   const Tiles folder;
   for (const char* surface : {"linear", "powell-sabin", "clough-tocher"})

@@ -181,6 +181,51 @@ void sample_rows(TileReader& reader, const SampledRows& rows, std::span<double> 
   }
 }
 
+Raster raster_of_window(TileReader& reader, const CellWindow& window, const Context& context) {
+  const TiledIndex& index = reader.index();
+  if (window.column < 0 || window.row < 0 || window.columns < 1 || window.rows < 1 ||
+      window.columns > index.columns - window.column || window.rows > index.rows - window.row)
+    throw BadInput(fmt::format("the window of {} x {} cells from ({}, {}) on is not within the model's grid of {} x {}",
+                               window.columns, window.rows, window.column, window.row, index.columns, index.rows));
+  Raster raster;
+  raster.columns = window.columns;
+  raster.rows = window.rows;
+  raster.cell_width = index.cell_width;
+  raster.cell_height = index.cell_height;
+  const Vec2 origin{window.column * index.cell_width, -window.row * index.cell_height};
+  const Vec2 corner = index.georef.to_crs(origin);
+  raster.georef = index.georef;
+  raster.georef.origin_x = corner.x;
+  raster.georef.origin_y = corner.y;
+  std::vector<double> heights(raster.cells());
+  // Rows of one row of tiles at a time, so that each tile is read once whatever the bound.
+  for (int first = 0; first < window.rows;) {
+    const int row = window.row + first;
+    const int some = std::min(window.rows - first, index.tile_size - row % index.tile_size);
+    const auto at = static_cast<std::size_t>(first) * static_cast<std::size_t>(window.columns),
+               size = static_cast<std::size_t>(some) * static_cast<std::size_t>(window.columns);
+    sample_rows(reader, {origin, {index.cell_width, index.cell_height}, window.columns, first, some},
+                std::span(heights).subspan(at, size), {}, context);
+    first += some;
+    context.report("sample", static_cast<double>(first) / static_cast<double>(window.rows));
+  }
+  raster.heights = std::move(heights);
+  return raster;
+}
+
+CellHeights cells_of(TileReader& reader) {
+  const TiledIndex& index = reader.index();
+  return {index.columns,
+          index.rows,
+          index.cell_width,
+          index.cell_height,
+          index.georef,
+          [&reader, cell = Vec2{index.cell_width, index.cell_height}](int column, int row) {
+            const auto jet = reader.jet({column * cell.x, -row * cell.y});
+            return jet ? jet->value : kNan;
+          }};
+}
+
 namespace {
 
 /// Which cells of a tile count in it: those of a seam in the first tile, row by row, that has data and holds them;

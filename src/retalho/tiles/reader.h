@@ -14,6 +14,7 @@
 
 #include "retalho/core/context.h"
 #include "retalho/model/tiled.h"
+#include "retalho/raster/cell_heights.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/report.h"
 
@@ -84,6 +85,13 @@ struct SampledRows {
 /// model, but for rounding. NaN: no data. Memory: the reader's bound, and one tile's part of the rows.
 void sample_rows(TileReader& reader, const SampledRows& rows, std::span<double> heights, std::span<Vec2> gradients,
                  const Context& context = {});
+
+/// The heights of a part of the model's grid: raster_of_cells of the joined model, but for rounding. Throws BadInput
+/// for a window that is not within the grid. Memory: 8 bytes a cell of the window, and the reader's bound.
+Raster raster_of_window(TileReader& reader, const CellWindow& window, const Context& context = {});
+
+/// The heights of the model's grid cell by cell, for work that asks for few of them; refers to the reader.
+CellHeights cells_of(TileReader& reader);
 
 /// What a joined model would have.
 struct TiledFacts {

@@ -16,36 +16,36 @@ constexpr double kTieSlope = 1e-10;  // as in horizon.h
 
 /// Terrain over the observer's cell, lowered by curvature.
 struct Ground {
-  const Raster& raster;
+  const CellHeights& cells;
   const Observer& observer;
   double drop;
 
   double at(int column, int row) const {
-    const double x = (column - observer.column) * raster.cell_width, y = (row - observer.row) * raster.cell_height;
-    return raster.at(column, row) - drop * (x * x + y * y);
+    const double x = (column - observer.column) * cells.cell_width, y = (row - observer.row) * cells.cell_height;
+    return cells.at(column, row) - drop * (x * x + y * y);
   }
 };
 
 }  // namespace
 
-SightLine line_of_sight(const Raster& raster, const Observer& observer, int target_column, int target_row,
+SightLine line_of_sight(const CellHeights& cells, const Observer& observer, int target_column, int target_row,
                         const SightOptions& options) {
   const auto check = [&](int column, int row, const char* what) {
-    if (column < 0 || row < 0 || column >= raster.columns || row >= raster.rows)
+    if (!cells.holds(column, row))
       throw BadInput(fmt::format("the {}'s cell ({}, {}) is outside of the grid of {} x {} cells", what, column, row,
-                                 raster.columns, raster.rows));
-    if (!raster.valid(column, row))
+                                 cells.columns, cells.rows));
+    if (std::isnan(cells.at(column, row)))
       throw BadInput(fmt::format("the {}'s cell ({}, {}) holds no data", what, column, row));
   };
   check(observer.column, observer.row, "observer");
   check(target_column, target_row, "target");
 
-  const Ground ground{raster, observer, visibility_detail::curvature_drop(options.earth_curvature, options.refraction)};
-  const double eye = raster.at(observer.column, observer.row) + observer.height;
+  const Ground ground{cells, observer, visibility_detail::curvature_drop(options.earth_curvature, options.refraction)};
+  const double eye = cells.at(observer.column, observer.row) + observer.height;
   const double aim = ground.at(target_column, target_row) + options.target_height;
   const int dc = target_column - observer.column, dr = target_row - observer.row;
   const int nc = std::abs(dc), nr = std::abs(dr), sc = dc < 0 ? -1 : 1, sr = dr < 0 ? -1 : 1;
-  const double length = std::hypot(dc * raster.cell_width, dr * raster.cell_height);
+  const double length = std::hypot(dc * cells.cell_width, dr * cells.cell_height);
   const int major = std::max(nc, nr);
 
   SightLine line;
@@ -59,7 +59,7 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
   const auto add = [&](double t, double height, bool inner) {
     ProfilePoint p;
     p.distance = t * length;
-    p.at = raster.centre(observer.column + t * dc, observer.row + t * dr);
+    p.at = cells.centre(observer.column + t * dc, observer.row + t * dr);
     p.ground = height;
     p.sight = eye + t * (aim - eye);
     p.fresnel = visibility_detail::fresnel_radius(options.frequency, p.distance, length);
@@ -80,7 +80,7 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
     line.profile.push_back(p);
   };
 
-  add(0, raster.at(observer.column, observer.row), false);
+  add(0, cells.at(observer.column, observer.row), false);
   // Crossings with column lines at i / nc, with row lines at j / nr, merged in order; equal ones are grid points.
   int i = 1, j = 1;
   while (i < nc || j < nr) {
@@ -110,6 +110,11 @@ SightLine line_of_sight(const Raster& raster, const Observer& observer, int targ
   }
   if (major > 0) add(1, ground.at(target_column, target_row), false);
   return line;
+}
+
+SightLine line_of_sight(const Raster& raster, const Observer& observer, int target_column, int target_row,
+                        const SightOptions& options) {
+  return line_of_sight(cells_of(raster), observer, target_column, target_row, options);
 }
 
 }  // namespace retalho

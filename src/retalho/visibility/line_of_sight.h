@@ -39,5 +39,8 @@ struct SightOptions {
 /// Throws BadInput where an end is outside of the grid or void.
 SightLine line_of_sight(const Raster& raster, const Observer& observer, int target_column, int target_row,
                         const SightOptions& options = {});
+/// The same, asking for the cells beside the line alone.
+SightLine line_of_sight(const CellHeights& cells, const Observer& observer, int target_column, int target_row,
+                        const SightOptions& options = {});
 
 }  // namespace retalho

@@ -188,11 +188,11 @@ void sweep(const Raster& raster, const Observer& observer, const ViewshedOptions
       raster.heights);
 }
 
-void check_observer(const Raster& raster, const Observer& o) {
-  if (o.column < 0 || o.row < 0 || o.column >= raster.columns || o.row >= raster.rows)
+void check_observer(const CellHeights& cells, const Observer& o) {
+  if (!cells.holds(o.column, o.row))
     throw BadInput(fmt::format("the observer's cell ({}, {}) is outside of the grid of {} x {} cells", o.column, o.row,
-                               raster.columns, raster.rows));
-  if (!raster.valid(o.column, o.row))
+                               cells.columns, cells.rows));
+  if (std::isnan(cells.at(o.column, o.row)))
     throw BadInput(
         fmt::format("the observer's cell ({}, {}) holds no data: move the observer to a valid cell", o.column, o.row));
   if (!std::isfinite(o.height)) throw BadInput("the observer's height is not a number");
@@ -202,7 +202,7 @@ void check_observer(const Raster& raster, const Observer& o) {
 template <class Mark>
 void mark_visible(const Raster& raster, const Observer& observer, const ViewshedOptions& options,
                   const Context& context, const Mark& mark) {
-  check_observer(raster, observer);
+  check_observer(cells_of(raster), observer);
   const Field field(raster, options);
   const FieldOfView view(options);
   mark(raster.index(observer.column, observer.row));
@@ -216,19 +216,23 @@ void mark_visible(const Raster& raster, const Observer& observer, const Viewshed
 
 }  // namespace
 
-Observer observer_at(const Raster& raster, Vec2 crs, double height) {
-  const Vec2 local = raster.georef.to_local(crs);
-  const double column = std::floor(local.x / raster.cell_width + 0.5),
-               row = std::floor(-local.y / raster.cell_height + 0.5);
-  if (!(column >= 0 && row >= 0 && column < raster.columns && row < raster.rows)) {
-    const Vec2 a = raster.georef.to_crs(raster.centre(-0.5, raster.rows - 0.5)),
-               b = raster.georef.to_crs(raster.centre(raster.columns - 0.5, -0.5));
+Observer observer_at(const CellHeights& cells, Vec2 crs, double height) {
+  const Vec2 local = cells.georef.to_local(crs);
+  const double column = std::floor(local.x / cells.cell_width + 0.5),
+               row = std::floor(-local.y / cells.cell_height + 0.5);
+  if (!(column >= 0 && row >= 0 && column < cells.columns && row < cells.rows)) {
+    const Vec2 a = cells.georef.to_crs(cells.centre(-0.5, cells.rows - 0.5)),
+               b = cells.georef.to_crs(cells.centre(cells.columns - 0.5, -0.5));
     throw BadInput(fmt::format("the observer at {}, {} is outside of the grid (x {} to {}, y {} to {})", crs.x, crs.y,
                                a.x, b.x, a.y, b.y));
   }
   const Observer observer{static_cast<int>(column), static_cast<int>(row), height};
-  check_observer(raster, observer);
+  check_observer(cells, observer);
   return observer;
+}
+
+Observer observer_at(const Raster& raster, Vec2 crs, double height) {
+  return observer_at(cells_of(raster), crs, height);
 }
 
 std::vector<std::uint8_t> viewshed(const Raster& raster, const Observer& observer, const ViewshedOptions& options,
@@ -252,7 +256,7 @@ std::vector<float> needed_heights(const Raster& raster, std::span<const Observer
                                   const ViewshedOptions& options, const Context& context) {
   std::vector<float> needed(raster.cells(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < observers.size(); ++i) {
-    check_observer(raster, observers[i]);
+    check_observer(cells_of(raster), observers[i]);
     needed[raster.index(observers[i].column, observers[i].row)] = 0;
     sweep(raster, observers[i], options, context, [&](int column, int row, double height, double, int k) {
       if (height > kBlocked / 2) return;

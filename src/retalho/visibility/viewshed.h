@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "retalho/core/context.h"
+#include "retalho/raster/cell_heights.h"
 #include "retalho/raster/raster.h"
 
 namespace retalho {
@@ -46,6 +47,7 @@ struct ViewshedOptions {
 /// Where `crs` (map coordinates) lies on the grid: the cell whose centre is nearest.
 /// Throws BadInput outside of the grid or on a void cell.
 Observer observer_at(const Raster& raster, Vec2 crs, double height);
+Observer observer_at(const CellHeights& cells, Vec2 crs, double height);
 
 /// 1 where the cell is visible from the observer, else 0; row-major. Void cells are 0.
 /// Throws BadInput for an observer outside of the grid or on a void cell.
