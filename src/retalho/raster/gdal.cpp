@@ -9,8 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <mutex>
 #include <numbers>
+#include <string_view>
+#include <thread>
 
 #include "retalho/core/error.h"
 
@@ -37,6 +40,38 @@ std::string to_wkt(const OGRSpatialReference& crs) {
     if (outcome == OGRERR_NONE && text && *text) return text;
   }
   return {};
+}
+
+/// The WKT of an EPSG code; empty: PROJ knows none. What PROJ writes depends on what the thread has asked it before
+/// (once a GeoTIFF was read, datum ensembles become datums), so a thread is asked that has not asked anything. Kept, as
+/// it takes some milliseconds and never changes.
+std::string standard_wkt(int code) {
+  static std::mutex mutex;
+  static std::map<int, std::string> known;
+  const std::lock_guard lock(mutex);
+  const auto [found, made] = known.try_emplace(code);
+  if (made) {
+    std::thread fresh([&] {
+      const GdalMessages quiet;
+      OGRSpatialReference crs;
+      if (crs.importFromEPSG(code) == OGRERR_NONE) found->second = to_wkt(crs);
+    });
+    fresh.join();
+  }
+  return found->second;
+}
+
+/// The CRS as text, by its EPSG code where it has one and is what the code says: the same text from every file, thread
+/// and order of work.
+std::string canonical_wkt(const OGRSpatialReference& crs) {
+  const char* authority = crs.GetAuthorityName(nullptr);
+  const char* code = crs.GetAuthorityCode(nullptr);
+  if (authority && code && std::string_view(authority) == "EPSG") {
+    const std::string text = standard_wkt(std::atoi(code));
+    OGRSpatialReference standard;
+    if (!text.empty() && standard.importFromWkt(text.c_str()) == OGRERR_NONE && crs.IsSame(&standard) != 0) return text;
+  }
+  return to_wkt(crs);
 }
 
 std::string unit_name(double factor, const char* name) {
@@ -92,7 +127,7 @@ void CloseDataset::operator()(GDALDataset* dataset) const {
 std::string describe_crs(const OGRSpatialReference* crs, double latitude, Georef& georef,
                          std::vector<std::string>& remarks) {
   if (!crs || crs->IsEmpty()) return {};
-  georef.crs_wkt = to_wkt(*crs);
+  georef.crs_wkt = canonical_wkt(*crs);
   georef.geographic = crs->IsGeographic() != 0;
   const char* name = nullptr;
   if (!georef.geographic) {

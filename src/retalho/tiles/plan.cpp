@@ -75,7 +75,10 @@ Raster read_tile(const TilePlan& plan, int tile_row, int tile_column, const Cont
   const CellWindow w = plan.frame.window(tile_row, tile_column);
   ReadOptions read = plan.read;
   read.window = w;
-  return read_raster(plan.source, read, nullptr, context);
+  Raster raster = read_raster(plan.source, read, nullptr, context);
+  raster.georef.crs_wkt =
+      plan.frame.georef.crs_wkt;  // the plan's words, whoever reads and however GDAL puts them there
+  return raster;
 }
 
 std::string tin_name(const TilePlan& plan, int tile_row, int tile_column, const Context& context) {
