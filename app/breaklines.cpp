@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 
 #include "inputs.h"
@@ -54,10 +53,7 @@ ConstrainedTin triangulate(const Program& program, const PointCloud& cloud, cons
                            const BreaklineFlags& flags, ScatteredNotes* notes, const Context& context) {
   if (!flags.given()) return {triangulate_points(cloud.positions, notes, context), {}};
   const LineLayer layer = read_lines(cloud.georef, input, flags.file, flags.layer, "--breakline-layer", context);
-  const PointSummary summary = summarize(cloud);
-  const Vec3 extent = summary.maximum - summary.minimum;
-  // Steps as long as the points are apart.
-  const double spacing = std::sqrt(extent.x * extent.y / static_cast<double>(summary.points));
+  const double spacing = mean_spacing(cloud.positions);  // steps as long as the points are apart
   std::size_t vertices = 0;
   std::vector<std::vector<Vec3>> breaklines;
   for (const VectorLine& line : layer.lines) {

@@ -7,25 +7,6 @@
 #include "retalho/core/error.h"
 
 namespace retalho::app {
-namespace {
-
-/// 1st, 2nd, 3rd, 5th, 11th.
-const char* ordinal(int n) {
-  if (n % 100 >= 11 && n % 100 <= 13) return "th";
-  return n % 10 == 1 ? "st" : n % 10 == 2 ? "nd" : n % 10 == 3 ? "rd" : "th";
-}
-
-std::string level_words(const SheetContent& content, const VectorOptions& file) {
-  const std::string unit = content.height_unit.empty() ? std::string() : " " + content.height_unit;
-  const std::string every = file.index_every > 0 ? fmt::format("; every {}{} is an index contour", file.index_every,
-                                                               ordinal(file.index_every))
-                                                 : std::string();
-  if (file.interval > 0) return fmt::format("Contour lines every {:.6g}{}{}", file.interval, unit, every);
-  return fmt::format("Contour lines at {} heights{}", content.lines->levels.size(), every);
-}
-
-}  // namespace
-
 void add_sheet_flags(CLI::App& command, SheetFlags& flags) {
   command.add_flag("--curves", flags.curves, "Map sheets: smooth Bézier curves within the tolerance, not polylines");
   command.add_option("--title", flags.title, "Map sheets: words above the map")->type_name("TEXT");
@@ -55,14 +36,12 @@ void check_sheet_flags(const SheetFlags& flags, const std::string& output) {
 void write_map_sheet(const Program& program, MapSheet& map, const SheetFlags& flags, const std::string& output,
                      const VectorOptions& file, const Context& context) {
   SheetContent& content = map.content;
-  content.index.clear();
-  for (std::size_t k = 0; k < content.lines->levels.size(); ++k)
-    content.index.push_back(is_index_level(content.lines->levels, static_cast<int>(k), file));
+  content.index = index_levels(content.lines->levels, file);
   SheetOptions options;
   options.size = sheet_size(flags.sheet.empty() ? "A4" : flags.sheet, content.extent.width() / content.extent.height());
   options.title = flags.title;
   options.crs_name = crs_name(content.georef.crs_wkt);
-  options.levels = level_words(content, file);
+  options.levels = level_words(content.lines->levels, content.height_unit, file);
   options.curves = flags.curves;
   options.tolerance = map.tolerance;
   options.traced = flags.curves ? content.lines->tolerance : 0;

@@ -1,76 +1,20 @@
 # The types of the extension module; what things mean stands in their docstrings (help(retalho.fit)). The ignored
 # overloads: a float is an ArrayLike, too, and gives a float.
 from collections.abc import Callable, Iterator, Sequence
-from os import PathLike
-from typing import Any, Final, Literal, Protocol, TypeAlias, TypedDict, overload
+from typing import Any, Final, Literal, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from ._types import (
+    BSpline, CrossDerivative, Crs, Floats, Gradients, Indices, Join, Layout, Look, MeshCheck, Parameters, PatchJoin,
+    PatchReport, Path, Progress, Quantity, Recovery, Samples, Surface, Transform, Voids,
+)
+
 __version__: str
 
-Floats: TypeAlias = NDArray[np.float64]
-Indices: TypeAlias = NDArray[np.uint32]
-Path: TypeAlias = str | PathLike[str]
-Transform: TypeAlias = tuple[float, float, float, float, float, float]
-Progress: TypeAlias = Callable[[str, float], object]
-Surface: TypeAlias = Literal["linear", "powell-sabin", "clough-tocher"]
-Gradients: TypeAlias = Literal["normals", "quadratic", "network"]
-CrossDerivative: TypeAlias = Literal["perpendicular", "cubic"]
-Voids: TypeAlias = Literal["transparent", "blocks"]
-Quantity: TypeAlias = Literal["height", "gradient", "slope", "aspect", "normal", "curvature"]
-Parameters: TypeAlias = Literal["uniform", "centripetal", "chord", "x"]
-Recovery: TypeAlias = Literal["smooth", "spr", "barycentric"]
-Layout: TypeAlias = Literal["delaunay", "midpoint"]
-Look: TypeAlias = tuple[bool, int, float, float]
-Samples: TypeAlias = Literal["parameter", "arc-length"]
-
-class _HasWkt(Protocol):
-    def to_wkt(self) -> str: ...
-
-Crs: TypeAlias = str | _HasWkt
 # An xarray.DataArray is an ArrayLike by its __array__.
 Heights: TypeAlias = ArrayLike | Path | Grid | Terrain
-
-class MeshCheck(TypedDict):
-    watertight: bool
-    open_edges: int
-    boundary_edges: int
-    cracks: int
-    nonmanifold_edges: int
-    degenerate_triangles: int
-    components: int
-
-class Join(TypedDict):
-    at: float
-    point: tuple[float, ...]
-    C: int
-    G: int
-    kind: str
-    gap: float
-    angle: float
-    curvature_gap: float
-    speed_ratio: float
-
-class PatchJoin(TypedDict):
-    patches: tuple[int, int]
-    sides: tuple[int, int]
-    watertight: bool
-    gap: float
-    angle: float
-    kind: Literal["G0", "G1"]
-
-class PatchReport(TypedDict):
-    boundary_gap: float
-    gradient_jump: float
-    folds: int
-    turned: int
-
-class BSpline(TypedDict):
-    degree: int
-    knots: Floats
-    points: Floats
-    weights: Floats | None
 
 class Error(Exception):
     kind: str
@@ -240,16 +184,11 @@ class SightLine:
 
 class Mesh:
     def __init__(self, positions: ArrayLike, triangles: ArrayLike) -> None: ...
-    @property
-    def positions(self) -> Floats: ...
-    @property
-    def normals(self) -> Floats: ...
-    @property
-    def texture(self) -> Floats: ...
-    @property
-    def triangles(self) -> Indices: ...
-    @property
-    def offset(self) -> tuple[float, float, float]: ...
+    positions: Final[Floats]
+    normals: Final[Floats]
+    texture: Final[Floats]
+    triangles: Final[Indices]
+    offset: Final[tuple[float, float, float]]
     def check(self) -> MeshCheck: ...
     def write(self, path: Path, *, overwrite: bool = False) -> None: ...
 
@@ -345,14 +284,10 @@ class PatchSet:
     def to_bytes(self) -> bytes: ...
 
 class RayHits:
-    @property
-    def t(self) -> Floats: ...
-    @property
-    def points(self) -> Floats: ...
-    @property
-    def normals(self) -> Floats: ...
-    @property
-    def hit(self) -> NDArray[np.bool_]: ...
+    t: Final[Floats]
+    points: Final[Floats]
+    normals: Final[Floats]
+    hit: Final[NDArray[np.bool_]]
     def __len__(self) -> int: ...
 
 class TetraQuad:
@@ -400,18 +335,14 @@ class TilePlan:
         ratio: float | None = None, surface: Literal["linear", "powell-sabin", "clough-tocher"] = "clough-tocher",
         fit: Literal["interpolate", "least-squares"] = "interpolate", band: int = 1, nodata: float | None = None,
     ) -> None: ...
-    @property
-    def settled(self) -> bool: ...
-    @property
-    def max_error(self) -> float | None: ...
+    settled: Final[bool]
+    max_error: Final[float | None]
     def look(self, row: int, column: int) -> Look: ...
     def areas(self, looks: Sequence[Look], row: int, column: int) -> list[bool]: ...
     def count(self, row: int, column: int, max_error: float, areas: Sequence[bool]) -> int: ...
     def settle(self, looks: Sequence[Look], count: Callable[[float], int]) -> TilePlan: ...
-    @property
-    def shape(self) -> tuple[int, int]: ...
-    @property
-    def tiles(self) -> tuple[int, int]: ...
+    shape: Final[tuple[int, int]]
+    tiles: Final[tuple[int, int]]
     def check(self, folder: Path, *, overwrite: bool = False) -> None: ...
     def tin_name(self, row: int, column: int) -> str: ...
     def make_tin(self, row: int, column: int, name: str, folder: Path) -> None: ...
@@ -425,6 +356,57 @@ class TilePlan:
         self, folder: Path, *, jobs: int = 0, overwrite: bool = False, threads: int = 0,
         progress: Progress | None = None,
     ) -> None: ...
+
+class TiledModel:
+    def __init__(self, folder: Path, *, memory: float = 512.0) -> None: ...
+    @overload
+    def __call__(self, x: float, y: float) -> float: ...  # type: ignore[misc]
+    @overload
+    def __call__(self, x: ArrayLike, y: ArrayLike) -> Floats: ...
+    def gradient(self, x: ArrayLike, y: ArrayLike) -> Floats: ...
+    @overload
+    def slope(self, x: float, y: float) -> float: ...  # type: ignore[misc]
+    @overload
+    def slope(self, x: ArrayLike, y: ArrayLike) -> Floats: ...
+    @overload
+    def aspect(self, x: float, y: float) -> float: ...  # type: ignore[misc]
+    @overload
+    def aspect(self, x: ArrayLike, y: ArrayLike) -> Floats: ...
+    def normal(self, x: ArrayLike, y: ArrayLike) -> Floats: ...
+    @overload
+    def curvature(self, x: float, y: float) -> float: ...  # type: ignore[misc]
+    @overload
+    def curvature(self, x: ArrayLike, y: ArrayLike) -> Floats: ...
+    def sample(
+        self, transform: ArrayLike | None = None, shape: tuple[int, int] | None = None, *, what: Quantity = "height",
+        threads: int = 0, progress: Progress | None = None,
+    ) -> Floats: ...
+    def window(
+        self, row: int, column: int, rows: int, columns: int, *, threads: int = 0, progress: Progress | None = None
+    ) -> Grid: ...
+    def part(self, bounds: ArrayLike) -> Terrain: ...
+    def compare(self, z: Heights, *, threads: int = 0, progress: Progress | None = None) -> ErrorReport: ...
+    def contours(
+        self, levels: ArrayLike | None = None, *, interval: float | None = None, base: float = 0.0,
+        tolerance: float | None = None, simplify: bool = True, threads: int = 0, progress: Progress | None = None,
+    ) -> Contours: ...
+    def write_contours(
+        self, path: Path, levels: ArrayLike | None = None, *, interval: float | None = None, base: float = 0.0,
+        tolerance: float | None = None, simplify: bool = True, overwrite: bool = False, index_every: int = 5,
+        threads: int = 0, progress: Progress | None = None,
+    ) -> dict[str, int]: ...
+    def write_mesh(
+        self, path: Path, *, tolerance: float = 0.0, overwrite: bool = False, threads: int = 0,
+        progress: Progress | None = None,
+    ) -> dict[str, float]: ...
+    shape: Final[tuple[int, int]]
+    transform: Final[Transform]
+    crs: Final[str | None]
+    surface: Final[str]
+    tolerance: Final[float]
+    tile_size: Final[int]
+    tiles: Final[list[TileEntry]]
+    reads: Final[int]
 
 def read_grid(
     path: Path, *, band: int = 1, nodata: float | None = None, threads: int = 0, progress: Progress | None = None
@@ -445,7 +427,8 @@ def fit_compact(
 def fit_points(
     points: ArrayLike, *, crs: Crs | None = None, max_error: float | None = None, vertices: int | None = None,
     ratio: float | None = None, surface: Surface = "clough-tocher", gradients: Gradients | None = None,
-    cross_derivative: CrossDerivative = "perpendicular", threads: int = 0, progress: Progress | None = None,
+    cross_derivative: CrossDerivative = "perpendicular", breaklines: Sequence[ArrayLike] | None = None,
+    threads: int = 0, progress: Progress | None = None,
 ) -> Terrain: ...
 def contours(
     z: Heights, levels: ArrayLike | None = None, *, transform: ArrayLike | None = None, crs: Crs | None = None,
@@ -484,7 +467,7 @@ def intervisibility(
     threads: int = 0, progress: Progress | None = None,
 ) -> NDArray[np.float32]: ...
 def line_of_sight(
-    z: Heights, observer: ArrayLike, target: ArrayLike, *, transform: ArrayLike | None = None,
+    z: Heights | TiledModel, observer: ArrayLike, target: ArrayLike, *, transform: ArrayLike | None = None,
     crs: Crs | None = None, nodata: float | None = None, observer_height: float = 2.0, target_height: float = 0.0,
     frequency: float = 0.0, earth_curvature: bool = False, refraction: float = 0.13, voids: Voids = "transparent",
     threads: int = 0, progress: Progress | None = None,
@@ -498,3 +481,16 @@ def read_patches(
 ) -> PatchSet: ...
 def load(path: Path) -> Terrain | TetraQuad | PatchSet: ...
 def from_bytes(data: bytes) -> Terrain | TetraQuad | PatchSet: ...
+def render(
+    z: Heights, *, transform: ArrayLike | None = None, crs: Crs | None = None, nodata: float | None = None,
+    size: tuple[int, int] = (640, 480), view: Literal["plan", "perspective"] = "plan",
+    colors: Literal["hypsometric", "gray"] = "hypsometric", light: tuple[float, float] = (315.0, 45.0),
+    exaggeration: float | None = None, from_: float = 200.0, elevation: float = 35.0, error: Heights | None = None,
+    threads: int = 0, progress: Progress | None = None,
+) -> NDArray[np.uint8]: ...
+def map_sheet(
+    z: Heights, path: Path, levels: ArrayLike | None = None, *, transform: ArrayLike | None = None,
+    crs: Crs | None = None, nodata: float | None = None, interval: float | None = None, base: float = 0.0,
+    tolerance: float | None = None, bands: bool = False, curves: bool = False, title: str = "", size: str = "A4",
+    index_every: int = 5, overwrite: bool = False, threads: int = 0, progress: Progress | None = None,
+) -> dict[str, float]: ...

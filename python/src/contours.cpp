@@ -45,40 +45,7 @@ struct Band {
   py::list holes;
 };
 
-/// The options as Python gives them.
-struct Asked {
-  std::optional<std::vector<double>> levels;
-  std::optional<double> interval, tolerance;
-  double base = 0;
-  bool simplify = true, bands = false;
-};
-
-/// A smooth surface may rise above its highest sample: levels go on a little beyond both ends.
-std::vector<double> levels_of(const Asked& asked, double low, double high) {
-  if (!asked.levels) {
-    const double beyond = 0.25 * (high - low);
-    return contour_levels(low - beyond, high + beyond, *asked.interval, asked.base);
-  }
-  std::vector<double> levels = *asked.levels;
-  for (const double level : levels)
-    if (!std::isfinite(level)) throw BadInput(fmt::format("levels holds {}", level), {}, "levels");
-  std::sort(levels.begin(), levels.end());
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-  return levels;
-}
-
-Asked parse(const py::object& levels, std::optional<double> interval, double base, std::optional<double> tolerance,
-            bool simplify, bool bands) {
-  if (levels.is_none() != interval.has_value())
-    throw UsageError("say which levels: levels=[...], or interval=... (with base=...)", {}, "levels");
-  if (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance)))
-    throw UsageError(fmt::format("tolerance must be above 0, not {}", *tolerance), {}, "tolerance");
-  Asked asked{{}, interval, tolerance, base, simplify, bands};
-  if (!levels.is_none()) asked.levels = as_vector(levels, "levels");
-  return asked;
-}
-
-std::shared_ptr<Lines> finish(ContourSet set, ContourExtras extras, const Georef& georef, const Asked& asked) {
+std::shared_ptr<Lines> finish(ContourSet set, ContourExtras extras, const Georef& georef, const AskedLines& asked) {
   auto lines = std::make_shared<Lines>();
   lines->georef = georef;
   lines->attributes.index_base = asked.base;
@@ -93,23 +60,17 @@ std::shared_ptr<Lines> finish(ContourSet set, ContourExtras extras, const Georef
   return lines;
 }
 
-std::shared_ptr<Lines> trace_model(const TerrainModel& model, const Asked& asked, const Context& context) {
+std::shared_ptr<Lines> trace_model(const TerrainModel& model, const AskedLines& asked, const Context& context) {
   const Terrain& terrain = model.terrain();
   const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
-  double cell = std::min(terrain.grid.cell_width, terrain.grid.cell_height);
-  if (terrain.grid.columns == 0) {  // the mean edge
-    double sum = 0;
-    for (const auto& t : terrain.tin.triangles) sum += norm(terrain.tin.points[t[1]] - terrain.tin.points[t[0]]);
-    cell = sum / static_cast<double>(std::max<std::size_t>(1, terrain.tin.triangles.size()));
-  }
-  const ContourOptions options{asked.tolerance.value_or(0.1 * cell), asked.simplify};
+  const ContourOptions options{asked.tolerance.value_or(0.1 * line_cell(terrain)), asked.simplify};
   ContourExtras extras;
   extras.want_bands = asked.bands;
   ContourSet set = trace_contours(terrain, levels_of(asked, *low, *high), options, context, &extras);
   return finish(std::move(set), std::move(extras), terrain.georef, asked);
 }
 
-std::shared_ptr<Lines> trace_raster(const Raster& raster, const Asked& asked, const BicubicOptions& surface,
+std::shared_ptr<Lines> trace_raster(const Raster& raster, const AskedLines& asked, const BicubicOptions& surface,
                                     const Context& context) {
   const RasterSummary summary = summarize(raster);
   if (summary.valid == 0) throw BadInput("z holds no data", {}, "z");
@@ -255,6 +216,41 @@ void add_classes(py::module_& module) {
 
 }  // namespace
 
+std::vector<double> levels_of(const AskedLines& asked, double low, double high) {
+  if (!asked.levels) {
+    const double beyond = 0.25 * (high - low);
+    return contour_levels(low - beyond, high + beyond, *asked.interval, asked.base);
+  }
+  std::vector<double> levels = *asked.levels;
+  for (const double level : levels)
+    if (!std::isfinite(level)) throw BadInput(fmt::format("levels holds {}", level), {}, "levels");
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+AskedLines parse_lines(const py::object& levels, std::optional<double> interval, double base,
+                       std::optional<double> tolerance, bool simplify, bool bands) {
+  if (levels.is_none() != interval.has_value())
+    throw UsageError("say which levels: levels=[...], or interval=... (with base=...)", {}, "levels");
+  if (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance)))
+    throw UsageError(fmt::format("tolerance must be above 0, not {}", *tolerance), {}, "tolerance");
+  AskedLines asked{{}, interval, tolerance, base, simplify, bands};
+  if (!levels.is_none()) asked.levels = as_vector(levels, "levels");
+  return asked;
+}
+
+double line_cell(const Terrain& terrain) {
+  if (terrain.grid.columns > 0) return std::min(terrain.grid.cell_width, terrain.grid.cell_height);
+  double sum = 0;
+  for (const auto& t : terrain.tin.triangles) sum += norm(terrain.tin.points[t[1]] - terrain.tin.points[t[0]]);
+  return sum / static_cast<double>(std::max<std::size_t>(1, terrain.tin.triangles.size()));
+}
+
+py::object contours_object(ContourSet set, const Georef& georef, const AskedLines& asked) {
+  return py::cast(finish(std::move(set), {}, georef, asked));
+}
+
 void add_contours(py::module_& module) {
   add_classes(module);
   module.def(
@@ -263,7 +259,7 @@ void add_contours(py::module_& module) {
          const py::object& nodata, std::optional<double> interval, double base, std::optional<double> tolerance,
          bool simplify, bool bands, const std::string& twist, const std::string& ends, bool keep_flats, int threads,
          const py::object& progress) {
-        const Asked asked = parse(levels, interval, base, tolerance, simplify, bands);
+        const AskedLines asked = parse_lines(levels, interval, base, tolerance, simplify, bands);
         const BicubicOptions surface = bicubic_options(twist, ends, keep_flats);
         const Running running{threads, progress};
         const auto raster = raster_of(z, {transform, crs, nodata}, running);
@@ -285,7 +281,7 @@ void add_contours(py::module_& module) {
       "contours",
       [](const TerrainModel& model, const py::object& levels, std::optional<double> interval, double base,
          std::optional<double> tolerance, bool simplify, bool bands, int threads, const py::object& progress) {
-        const Asked asked = parse(levels, interval, base, tolerance, simplify, bands);
+        const AskedLines asked = parse_lines(levels, interval, base, tolerance, simplify, bands);
         return run(Running{threads, progress},
                    [&](const Context& context) { return trace_model(model, asked, context); });
       },

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/surface_refine.h"
+#include "retalho/tin/breaklines.h"
 #include "retalho/tin/refine.h"
 #include "retalho/tin/scattered.h"
 #include "terrain.h"
@@ -160,8 +162,24 @@ std::vector<Vec3> localize(std::vector<Vec3> points, const std::string& crs, Geo
   return points;
 }
 
-Terrain fit_cloud(const std::vector<Vec3>& points, const Georef& georef, const Asked& asked,
-                  const SurfaceOptions& surface, const Context& context) {
+using Lines = std::vector<std::vector<Vec3>>;
+
+/// Lines of shape (n, 2) - without heights: they lie on the flat surface of the points - or (n, 3).
+Lines lines_of(const py::object& breaklines) {
+  Lines lines;
+  if (breaklines.is_none()) return lines;
+  for (const py::handle line : breaklines) {
+    int dimension = 0;
+    std::vector<Vec3> places = as_points(py::reinterpret_borrow<py::object>(line), "breaklines", dimension);
+    if (dimension == 2)
+      for (Vec3& p : places) p.z = std::numeric_limits<double>::quiet_NaN();
+    lines.push_back(std::move(places));
+  }
+  return lines;
+}
+
+Terrain fit_cloud(const std::vector<Vec3>& points, Lines lines, const Georef& georef, const Asked& asked,
+                  SurfaceOptions surface, const Context& context) {
   Tin tin;
   double tolerance = 0;
   if (asked.budget()) {
@@ -170,6 +188,18 @@ Terrain fit_cloud(const std::vector<Vec3>& points, const Georef& georef, const A
     const Budget budget = resolve(asked, points.size(), high->z - low->z);
     tolerance = budget.max_error;
     tin = refine_points(points, {budget.max_error, budget.vertices}, nullptr, context);
+  } else if (!lines.empty()) {
+    const double spacing = mean_spacing(points);
+    for (std::vector<Vec3>& line : lines) {
+      for (Vec3& p : line) {
+        const Vec2 local = georef.to_local({p.x, p.y});
+        p = {local.x, local.y, p.z};
+      }
+      if (spacing > 0) line = with_steps(line, spacing);
+    }
+    ConstrainedTin made = triangulate_points(points, lines, nullptr, nullptr, context);
+    tin = std::move(made.tin);
+    surface.creases = std::move(made.edges);
   } else {
     tin = triangulate_points(points, nullptr, context);
   }
@@ -220,8 +250,8 @@ void add_fit(py::module_& module) {
       "fit_points",
       [](const py::object& points, const py::object& crs, std::optional<double> max_error,
          std::optional<long long> vertices, std::optional<double> ratio, const std::string& surface,
-         std::optional<std::string> gradients, const std::string& cross_derivative, int threads,
-         const py::object& progress) {
+         std::optional<std::string> gradients, const std::string& cross_derivative, const py::object& breaklines,
+         int threads, const py::object& progress) {
         Asked asked;
         asked.max_error = max_error;
         asked.vertices = vertices;
@@ -231,19 +261,24 @@ void add_fit(py::module_& module) {
         asked.cross_derivative = cross_derivative;
         const SurfaceOptions options = surface_options(asked, true);
         resolve(asked, 1, 1);
+        Lines lines = lines_of(breaklines);
+        if (!lines.empty() && asked.budget())
+          throw UsageError("breaklines keep every point: leave max_error, vertices and ratio out", {}, "breaklines");
         Georef georef;
         const std::vector<Vec3> local = localize(as_points3(points, "points"), crs_text(crs), georef);
         return std::make_shared<TerrainModel>(run(Running{threads, progress}, [&](const Context& context) {
-          return fit_cloud(local, georef, asked, options, context);
+          return fit_cloud(local, std::move(lines), georef, asked, options, context);
         }));
       },
       py::arg("points"), py::kw_only(), py::arg("crs") = py::none(), py::arg("max_error") = py::none(),
       py::arg("vertices") = py::none(), py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher",
-      py::arg("gradients") = py::none(), py::arg("cross_derivative") = "perpendicular", py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
+      py::arg("gradients") = py::none(), py::arg("cross_derivative") = "perpendicular",
+      py::arg("breaklines") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
       "Survey points of shape (n, 3) - x, y in the CRS and height - to a terrain model on their Delaunay "
       "triangulation.\n\nEvery point becomes a vertex, unless max_error, vertices or ratio keep fewer. Points that "
-      "repeat an (x, y) become one vertex with the mean height. gradients: quadratic (default), normals or network.");
+      "repeat an (x, y) become one vertex with the mean height. gradients: quadratic (default), normals or network. "
+      "breaklines: lines that triangles keep to and that the surface may fold along, each of shape (n, 3), or (n, 2) "
+      "without heights (they lie on the flat surface of the points).");
 }
 
 }  // namespace retalho::python

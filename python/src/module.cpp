@@ -10,8 +10,10 @@
 #include "mesh.h"
 #include "model.h"
 #include "patches.h"
+#include "pictures.h"
 #include "terrain.h"
 #include "tetraquad.h"
+#include "tiled_model.h"
 #include "tiles.h"
 #include "visibility.h"
 
@@ -32,5 +34,7 @@ PYBIND11_MODULE(_retalho, module) {
   python::add_tetraquad(module);
   python::add_model(module);
   python::add_tiles(module);
+  python::add_tiled_model(module);
   python::add_formats(module);
+  python::add_pictures(module);
 }

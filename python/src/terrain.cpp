@@ -8,9 +8,9 @@
 
 #include "arrays.h"
 #include "model.h"
+#include "quantity.h"
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
-#include "retalho/terrain/quantities.h"
 #include "retalho/terrain/report.h"
 
 namespace py = pybind11;
@@ -20,50 +20,6 @@ namespace {
 
 constexpr std::size_t kFew = 256;  // points
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// What can be asked of a point, and how many numbers it has.
-struct Quantity {
-  const char* name;
-  py::ssize_t width;
-};
-enum What { height, gradient, slope, aspect, normal, curvature };
-constexpr std::array<Quantity, 6> kQuantities{
-    {{"height", 1}, {"gradient", 2}, {"slope", 1}, {"aspect", 1}, {"normal", 3}, {"curvature", 1}}};
-
-What parse_what(const std::string& name) {
-  for (std::size_t k = 0; k < kQuantities.size(); ++k)
-    if (name == kQuantities[k].name) return static_cast<What>(k);
-  throw UsageError(fmt::format("what: '{}' is none of height, gradient, slope, aspect, normal, curvature", name), {},
-                   "what");
-}
-
-void put(What what, const Jet& jet, double* out) {
-  switch (what) {
-    case height:
-      out[0] = jet.value;
-      break;
-    case gradient:
-      out[0] = jet.gradient.x;
-      out[1] = jet.gradient.y;
-      break;
-    case slope:
-      out[0] = slope_degrees(jet.gradient);
-      break;
-    case aspect:
-      out[0] = aspect_degrees(jet.gradient);
-      break;
-    case normal: {
-      const Vec3 n = unit_normal(jet.gradient);
-      out[0] = n.x;
-      out[1] = n.y;
-      out[2] = n.z;
-      break;
-    }
-    case curvature:
-      out[0] = mean_curvature(jet);
-      break;
-  }
-}
 
 bool finite(Vec2 p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
@@ -138,35 +94,10 @@ std::vector<double> values_on(const TerrainModel& model, Vec2 origin, Vec2 step,
   return out;
 }
 
-/// Where a raster's cells lie in the model's local coordinates.
-struct Cells {
-  Vec2 origin, step;
-  int columns = 0, rows = 0;
-};
-
-Cells cells_of(const Terrain& terrain, const py::object& transform, const py::object& shape) {
-  if (transform.is_none() != shape.is_none())
-    throw UsageError("give transform and shape, or neither (the model's own grid)", {}, "transform");
-  if (transform.is_none()) {
-    const GridDomain& grid = terrain.grid;
-    if (grid.columns == 0)
-      throw UsageError("this model was made from points and has no cells: give transform and shape", {}, "transform");
-    return {{0, 0}, {grid.cell_width, grid.cell_height}, grid.columns, grid.rows};
-  }
-  const std::vector<double> sides = as_vector(shape, "shape");
-  if (sides.size() != 2 || std::floor(sides[0]) != sides[0] || std::floor(sides[1]) != sides[1] ||
-      !(std::abs(sides[0]) < 1e9 && std::abs(sides[1]) < 1e9))
-    throw BadInput("shape must be two whole numbers (rows, columns)", {}, "shape");
-  const Raster r = empty_raster(as_transform(transform), {}, static_cast<int>(sides[1]), static_cast<int>(sides[0]));
-  const Georef& g = terrain.georef;
-  return {
-      g.to_local(r.georef.to_crs({0, 0})), {r.cell_width * g.scale_x, r.cell_height * g.scale_y}, r.columns, r.rows};
-}
-
 py::object sample(const TerrainModel& model, const py::object& transform, const py::object& shape,
                   const std::string& what, const Running& running) {
   const What quantity = parse_what(what);
-  const Cells cells = cells_of(model.terrain(), transform, shape);
+  const Cells cells = cells_of(model.terrain().georef, model.terrain().grid, transform, shape);
   std::vector<double> values = run(running, [&](const Context& context) {
     return values_on(model, cells.origin, cells.step, cells.columns, cells.rows, quantity, context);
   });
@@ -245,7 +176,7 @@ const TerrainEvaluator& TerrainModel::evaluator(const Context& context) const {
 }
 
 std::shared_ptr<const Raster> model_raster(const TerrainModel& model, const Running& running) {
-  const Cells cells = cells_of(model.terrain(), py::none(), py::none());
+  const Cells cells = cells_of(model.terrain().georef, model.terrain().grid, py::none(), py::none());
   auto raster = std::make_shared<Raster>();
   raster->columns = cells.columns;
   raster->rows = cells.rows;

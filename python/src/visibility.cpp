@@ -12,6 +12,7 @@
 #include "retalho/visibility/intervisibility.h"
 #include "retalho/visibility/line_of_sight.h"
 #include "retalho/visibility/viewshed.h"
+#include "tiled_model.h"
 
 namespace py = pybind11;
 
@@ -25,7 +26,7 @@ VoidRule parse_voids(const std::string& name) {
 }
 
 /// (n, 2) or (n, 3) CRS coordinates; the third is the eye's height above the ground.
-std::vector<Observer> observers_of(const Raster& raster, const py::object& observers, double height) {
+std::vector<Observer> observers_of(const CellHeights& cells, const py::object& observers, double height) {
   int dimension = 0;
   const std::vector<Vec3> points = as_points(observers, "observers", dimension);
   if (points.empty()) throw BadInput("there are no observers: the shape is (0, 2)", {}, "observers");
@@ -33,7 +34,7 @@ std::vector<Observer> observers_of(const Raster& raster, const py::object& obser
   for (const Vec3& p : points) {
     const double eye = dimension == 3 ? p.z : height;
     if (!std::isfinite(eye)) throw BadInput(fmt::format("an observer's height is {}", eye), {}, "observers");
-    all.push_back(observer_at(raster, {p.x, p.y}, eye));
+    all.push_back(observer_at(cells, {p.x, p.y}, eye));
   }
   return all;
 }
@@ -62,7 +63,7 @@ py::object viewshed_of(const py::object& z, const py::object& observers, const P
   }
   if (!vertical.is_none()) std::tie(options.lowest, options.highest) = pair_of(vertical, "vertical");
   const auto raster = raster_of(z, placing, running);
-  const std::vector<Observer> eyes = observers_of(*raster, observers, observer_height);
+  const std::vector<Observer> eyes = observers_of(cells_of(*raster), observers, observer_height);
   if (what == "height")
     return own<float>(
         run(running, [&](const Context& context) { return needed_heights(*raster, eyes, options, context); }),
@@ -115,11 +116,20 @@ void add_sight(py::module_& module) {
          double frequency, bool earth_curvature, double refraction, const std::string& voids, int threads,
          const py::object& progress) {
         const Running running{threads, progress};
-        const auto raster = raster_of(z, {transform, crs, nodata}, running);
-        const Observer from = observers_of(*raster, observer, observer_height).front();
-        const Observer to = observers_of(*raster, target, 0).front();
         const SightOptions options{target_height, frequency, earth_curvature, refraction, parse_voids(voids)};
-        return Sight{line_of_sight(*raster, from, to.column, to.row, options), raster->georef};
+        const auto over = [&](const CellHeights& cells) {
+          const Observer from = observers_of(cells, observer, observer_height).front();
+          const Observer to = observers_of(cells, target, 0).front();
+          return Sight{line_of_sight(cells, from, to.column, to.row, options), cells.georef};
+        };
+        if (py::isinstance<TiledModel>(z)) {
+          if (!transform.is_none() || !crs.is_none() || !nodata.is_none())
+            throw UsageError("z is a TiledModel, which says itself where it lies: leave transform, crs and nodata out",
+                             {}, "transform");
+          return over(cells_of(py::cast<const TiledModel&>(z).reader()));
+        }
+        const auto raster = raster_of(z, {transform, crs, nodata}, running);
+        return over(cells_of(*raster));
       },
       py::arg("z"), py::arg("observer"), py::arg("target"), py::kw_only(), py::arg("transform") = py::none(),
       py::arg("crs") = py::none(), py::arg("nodata") = py::none(), py::arg("observer_height") = 2.0,
@@ -127,7 +137,7 @@ void add_sight(py::module_& module) {
       py::arg("refraction") = 0.13, py::arg("voids") = "transparent", py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "The sight line between the cells at two places (x, y) of the CRS. Heights are above the ground; frequency in "
-      "Hz, for the Fresnel zone.");
+      "Hz, for the Fresnel zone. Of a TiledModel only the tiles beside the line are read.");
 }
 
 }  // namespace

@@ -291,6 +291,31 @@ Vec2 sheet_size(std::string_view name, double aspect) {
       "--sheet");
 }
 
+namespace {
+
+/// 1st, 2nd, 3rd, 5th, 11th.
+const char* ordinal(int n) {
+  if (n % 100 >= 11 && n % 100 <= 13) return "th";
+  return n % 10 == 1 ? "st" : n % 10 == 2 ? "nd" : n % 10 == 3 ? "rd" : "th";
+}
+
+}  // namespace
+
+std::string level_words(const std::vector<double>& levels, const std::string& height_unit, const VectorOptions& lines) {
+  const std::string unit = height_unit.empty() ? std::string() : " " + height_unit;
+  const std::string every = lines.index_every > 0 ? fmt::format("; every {}{} is an index contour", lines.index_every,
+                                                                ordinal(lines.index_every))
+                                                  : std::string();
+  if (lines.interval > 0) return fmt::format("Contour lines every {:.6g}{}{}", lines.interval, unit, every);
+  return fmt::format("Contour lines at {} heights{}", levels.size(), every);
+}
+
+std::vector<bool> index_levels(const std::vector<double>& levels, const VectorOptions& lines) {
+  std::vector<bool> index;
+  for (std::size_t k = 0; k < levels.size(); ++k) index.push_back(is_index_level(levels, static_cast<int>(k), lines));
+  return index;
+}
+
 std::string contour_sheet(const SheetContent& content, const SheetOptions& options, bool pdf, SheetReport& report,
                           const Context& context) {
   report = {};

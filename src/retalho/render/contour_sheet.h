@@ -16,6 +16,7 @@
 #include "retalho/core/context.h"
 #include "retalho/level/contours.h"
 #include "retalho/level/spot_heights.h"
+#include "retalho/level/write_vector.h"
 #include "retalho/raster/georef.h"
 #include "retalho/render/field.h"
 
@@ -54,6 +55,11 @@ struct SheetReport {
 /// "A0" to "A6" (the longer side along the longer side of the map, whose width / height is `aspect`), or "WxH" in mm,
 /// 80 to 5000 each. Throws UsageError.
 Vec2 sheet_size(std::string_view name, double aspect);
+
+/// "Contour lines every 20 m; every 5th is an index contour".
+std::string level_words(const std::vector<double>& levels, const std::string& height_unit, const VectorOptions& lines);
+/// SheetContent::index of these levels.
+std::vector<bool> index_levels(const std::vector<double>& levels, const VectorOptions& lines);
 
 /// The bytes of the file. Throws UsageError for a sheet without room for a map, BadInput for a map without extent,
 /// CannotRead where the font is missing.

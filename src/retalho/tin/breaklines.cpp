@@ -210,6 +210,16 @@ ConstrainedTin in_order(Tin tin, const ConstraintMesh& mesh) {
 
 }  // namespace
 
+double mean_spacing(std::span<const Vec3> points) {
+  if (points.empty()) return 0;
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), 0};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), 0};
+  }
+  return std::sqrt((high.x - low.x) * (high.y - low.y) / static_cast<double>(points.size()));
+}
+
 std::vector<Vec3> with_steps(std::span<const Vec3> line, double longest) {
   std::vector<Vec3> dense;
   for (std::size_t k = 0; k < line.size(); ++k) {

@@ -30,6 +30,9 @@ struct ConstrainedTin {
 /// fades out over its last edge: a line of few long segments would hardly fold the surface.
 std::vector<Vec3> with_steps(std::span<const Vec3> line, double longest);
 
+/// How far apart points are in plan, were they spread evenly over their box; 0 for less than two places.
+double mean_spacing(std::span<const Vec3> points);
+
 /// Constrained Delaunay triangulation of points and breaklines: every segment of a breakline is an edge, or a chain of
 /// edges where vertices lie on it; all other edges are locally Delaunay (exact predicates). A vertex whose z is NaN
 /// gets its height from the flat Delaunay surface of `points`. Where lines cross, a vertex is made at the rounded
