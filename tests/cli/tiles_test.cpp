@@ -83,7 +83,7 @@ TEST(FitTiles, LinesAndMeshesAreTheSameBytesFromAnyNumberOfThreadsAndAnyBound) {
   // What wants the whole surface joins it.
   for (const char* options : {"-o b.gpkg --bands", "-o m.svg", "-o m.pdf --bands --curves"})
     EXPECT_EQ(run(folder, std::string("contour m --interval 20 ") + options).code, 0) << options;
-  EXPECT_EQ(run(folder, "contour m -o c.json --interval 20 --conics").code, 2) << "not a Powell-Sabin model";
+  EXPECT_EQ(run(folder, "contour m -o c.json --interval 20 --conics").code, 3) << "not a Powell-Sabin model";
 }
 
 TEST(FitTiles, ViewshedsReadTheTilesThatTheyNeed) {
