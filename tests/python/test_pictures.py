@@ -63,7 +63,9 @@ def test_a_map_sheet_is_the_programs(
     model = retalho.fit(grid, max_error=2.0, refine="flat", surface="powell-sabin")
     model.save(tmp_path / "m.retalho")
     words = [w for name, value in options.items() for w in ([f"--{name}"] if value is True else [f"--{name}", str(value)])]
-    for z, name in ((retalho.read_grid(tmp_path / "dem.tif"), "dem.tif"), (model, "m.retalho")):
+    inputs: list[tuple[retalho.Grid | retalho.Terrain, str]] = [
+        (retalho.read_grid(tmp_path / "dem.tif"), "dem.tif"), (model, "m.retalho")]
+    for z, name in inputs:
         for ending in ("svg", "pdf"):
             said = retalho.map_sheet(z, tmp_path / f"ours.{ending}", interval=20, title="Hills", size="A3",
                                      overwrite=True, **options)  # type: ignore[arg-type]
@@ -98,9 +100,9 @@ def test_breaklines_are_the_programs(tmp_path: pathlib.Path, program: pathlib.Pa
     if made.returncode == 0:  # GeoJSON has a CRS of its own, which the program may not take for points without one
         theirs = retalho.load(tmp_path / "m.retalho")
         assert isinstance(theirs, retalho.Terrain) and theirs.to_bytes() == creased.to_bytes()
-    draped = retalho.fit_points(points, breaklines=[ditch[:, :2], [[0.5, 50], [20, 50]]])
+    draped = retalho.fit_points(points, breaklines=[ditch[:, :2], np.array([[2.0, 50], [20, 50]])])
     assert len(draped.vertices) > len(points)
     with pytest.raises(ValueError, match="breaklines"):
         retalho.fit_points(points, breaklines=[ditch], max_error=1.0)
     with pytest.raises(ValueError, match="breaklines"):
-        retalho.fit_points(points, breaklines=[[1, 2, 3]])
+        retalho.fit_points(points, breaklines=[[1, 2, 3, 4]])
