@@ -73,11 +73,11 @@ std::vector<Vec3> lifted(const std::vector<Vec2>& points) {
 }
 
 /// Lines of any form, for vector files and for the JSON of curves that have no exact one.
-std::vector<VectorLine> lines_of(const NamedCurve& c, double tolerance) {
+std::vector<VectorLine> lines_of(const NamedCurve& c, double tolerance, const Context& context) {
   std::vector<VectorLine> lines;
   if (c.curve) {
     const double t = tolerance > 0 ? tolerance : 1e-4 * std::max(control_size(c.curve->points), 1e-300);
-    const FlatCurve flat = flatten(*c.curve, t);
+    const FlatCurve flat = flatten(*c.curve, t, context);
     for (std::size_t k = 0; k < flat.starts.size(); ++k) {
       const std::size_t from = flat.starts[k],
                         to = k + 1 < flat.starts.size() ? flat.starts[k + 1] : flat.points.size();
@@ -140,12 +140,13 @@ CurveSpec converted(const NamedCurve& c, const std::string& kind) {
   return spec;
 }
 
-void write_json(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite) {
+void write_json(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite,
+                const Context& context) {
   const bool changed = work.degree > 0 || work.reverse || !work.cut.empty();
   CurveDocument document;
   for (const NamedCurve& c : curves) {
     if (work.flatten > 0 || (!c.curve && !work.convert.empty())) {
-      for (const VectorLine& line : lines_of(c, work.flatten)) {
+      for (const VectorLine& line : lines_of(c, work.flatten, context)) {
         CurveSpec spec;
         spec.kind = CurveKind::polyline;
         spec.name = line.name;
@@ -267,12 +268,12 @@ std::vector<NamedCurve> load_curves(const std::string& file, const CurveWork& wo
 void write_curves(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite,
                   const Context& context) {
   context.check();
-  if (path.ends_with(".json")) return write_json(curves, path, work, overwrite);
+  if (path.ends_with(".json")) return write_json(curves, path, work, overwrite, context);
   if (path.ends_with(".svg") || path.ends_with(".pdf") || path.ends_with(".png"))
     return draw(curves, path, work, overwrite);
   std::vector<VectorLine> lines;
   for (const NamedCurve& c : curves)
-    for (VectorLine& line : lines_of(c, work.flatten)) lines.push_back(std::move(line));
+    for (VectorLine& line : lines_of(c, work.flatten, context)) lines.push_back(std::move(line));
   write_vector_lines(lines, path, overwrite);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "curve/support.h"
@@ -77,6 +78,12 @@ TEST(Flatten, JoinsCuspsAndGapsAreVertices) {
   EXPECT_EQ(two.points.size(), 4U);
   EXPECT_THROW(flatten(gap, 0), UsageError);
   EXPECT_THROW(flatten(gap, std::nan("")), UsageError);
+}
+
+TEST(Flatten, HearsThatItIsToStop) {
+  const Curve arch = make_bezier(std::vector<Vec2>{{0, 0}, {1, 2}, {3, 2}, {4, 0}});
+  std::atomic<bool> stop = true;
+  EXPECT_THROW(flatten(arch, 1e-14, {.cancel = &stop}), Interrupted);
 }
 
 }  // namespace

@@ -44,12 +44,14 @@ double chord_bound(const CurveSegment& s) {
 
 class Flattening {
  public:
-  Flattening(FlatCurve& out, double tolerance) : out_(out), tolerance_(tolerance) {}
+  Flattening(FlatCurve& out, double tolerance, const Context& context)
+      : out_(out), tolerance_(tolerance), context_(context) {}
 
   void visit(const CurveSegment& s, int level) {
     const double bound = chord_bound(s);
     // Half a tolerance of 1e-12 is left to rounding; below the resolution of the coordinates nothing can be gained.
     if (bound <= tolerance_ * (1 - 1e-12) || level >= 52) {
+      if (out_.points.size() % 1024 == 0) context_.check();
       out_.bound = std::max(out_.bound, bound);
       out_.points.push_back(s.points.back());
       out_.parameters.push_back(s.to);
@@ -63,15 +65,17 @@ class Flattening {
  private:
   FlatCurve& out_;
   double tolerance_;
+  const Context& context_;
 };
 
 }  // namespace
 
-FlatCurve flatten(const Curve& curve, double tolerance) {
+FlatCurve flatten(const Curve& curve, double tolerance, const Context& context) {
   if (!(tolerance > 0)) throw UsageError(fmt::format("flattening tolerance {}: it must be positive", tolerance));
   FlatCurve out;
-  Flattening work(out, tolerance);
+  Flattening work(out, tolerance, context);
   for (std::size_t i = 0; i < curve.segment_count(); ++i) {
+    context.check();
     const CurveSegment s = curve.segment(i);
     if (out.points.empty() || !(out.points.back() == s.points.front())) {
       const bool gap = out.points.empty() || norm(out.points.back() - s.points.front()) > 1e-9 * control_size(s.points);

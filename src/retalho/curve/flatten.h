@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "retalho/core/context.h"
 #include "retalho/curve/curve.h"
 
 namespace retalho {
@@ -21,7 +22,7 @@ struct FlatCurve {
 };
 
 /// Throws UsageError unless tolerance > 0. Cost: about one subdivision a vertex.
-FlatCurve flatten(const Curve& curve, double tolerance);
+FlatCurve flatten(const Curve& curve, double tolerance, const Context& context = {});
 
 /// How many uniform steps keep a polynomial segment within `tolerance` of its chords (Wang's bound):
 /// ceil(sqrt(n (n - 1) max |second difference| / (8 tolerance))), at least 1.

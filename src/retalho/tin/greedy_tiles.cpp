@@ -219,7 +219,7 @@ class Refinement {
       heap.pop();
       const Record& t = mesh_[e.id];
       if (t.error != e.error || t.candidate != e.cell) continue;  // replaced since
-      if (vertices_ % 1024 == 0) context_.check();
+      context_.check();
       insert(e.id, e.cell, worker->cavity);
       for (int i = 0; i < worker->cavity.made_size; ++i) {
         scan_(field_, mesh_[worker->cavity.made[i]]);
