@@ -49,16 +49,15 @@ std::string standard_wkt(int code) {
   static std::mutex mutex;
   static std::map<int, std::string> known;
   const std::lock_guard lock(mutex);
-  const auto [found, made] = known.try_emplace(code);
-  if (made) {
-    std::thread fresh([&] {
-      const GdalMessages quiet;
-      OGRSpatialReference crs;
-      if (crs.importFromEPSG(code) == OGRERR_NONE) found->second = to_wkt(crs);
-    });
-    fresh.join();
-  }
-  return found->second;
+  if (const auto found = known.find(code); found != known.end()) return found->second;
+  std::string& text = known[code];
+  std::thread fresh([&] {
+    const GdalMessages quiet;
+    OGRSpatialReference crs;
+    if (crs.importFromEPSG(code) == OGRERR_NONE) text = to_wkt(crs);
+  });
+  fresh.join();
+  return text;
 }
 
 /// The CRS as text, by its EPSG code where it has one and is what the code says: the same text from every file, thread
