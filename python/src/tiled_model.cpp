@@ -97,8 +97,8 @@ std::vector<double> values_on(const TiledModel& model, const Cells& cells, What 
                       count = static_cast<std::size_t>(some) * columns;
     if (what == curvature) {  // needs second derivatives
       for (std::size_t k = 0; k < count; ++k) {
-        const auto c = static_cast<double>(k % columns),
-                   r = static_cast<double>(first) + static_cast<double>(k / columns);
+        const std::size_t column = k % columns, row = static_cast<std::size_t>(first) + k / columns;
+        const auto c = static_cast<double>(column), r = static_cast<double>(row);
         const auto jet = model.reader().jet({cells.origin.x + c * cells.step.x, cells.origin.y - r * cells.step.y});
         if (jet) put(what, *jet, out.data() + from + k);
       }
