@@ -417,6 +417,7 @@ def fit(
     surface: Surface = "clough-tocher", gradients: Gradients | None = None, cross_derivative: CrossDerivative = ...,
     fit: Literal["interpolate", "least-squares", "z-only"] | None = None,
     refine: Literal["flat", "surface"] | None = None, effort: Literal["fast", "normal", "best"] | None = None,
+    creases: Literal["none", "auto"] | Sequence[ArrayLike] | None = None,
     threads: int = 0, progress: Progress | None = None,
 ) -> Terrain: ...
 def fit_compact(

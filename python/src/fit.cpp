@@ -13,6 +13,7 @@
 #include "grid.h"
 #include "retalho/core/error.h"
 #include "retalho/raster/gdal.h"
+#include "retalho/terrain/crease_lines.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/surface_refine.h"
@@ -36,7 +37,10 @@ struct Asked {
   std::string surface = "clough-tocher", cross_derivative = "perpendicular";
   std::optional<std::string> fit, refine, effort;  // none: as the program chooses
   std::optional<std::string> gradients;
+  bool chosen_creases = false;                       // creases='auto'
+  std::vector<std::vector<Vec2>> crease_lines = {};  // in the CRS
 
+  bool creases() const { return chosen_creases || !crease_lines.empty(); }
   bool budget() const { return max_error || ratio || vertices; }
 };
 
@@ -102,6 +106,15 @@ void check_fit(const Asked& asked) {
   const bool refined = refines_surface(asked);
   if (asked.effort && !refined)
     throw UsageError("effort moves the vertices of a surface: refine='flat' has none to move", {}, "effort");
+  if (asked.creases()) {
+    if (asked.max_error || !asked.budget())
+      throw UsageError("creases go with a budget: give vertices or ratio, and no max_error", {}, "creases");
+    if (asked.surface == "linear")
+      throw UsageError("creases are for smooth surfaces: a flat one folds along every edge", {}, "surface");
+    if (fit == "z-only")
+      throw UsageError("creases have gradients of their own on each side: leave fit='z-only' out", {}, "fit");
+    if (!refined) throw UsageError("creases go with refine='surface'", {}, "refine");
+  }
   if (fit == "interpolate" && !refined) return;
   if (asked.gradients)
     throw UsageError("gradients exclude fit='least-squares', fit='z-only' and refine='surface', which set them", {},
@@ -118,15 +131,22 @@ Terrain fit_raster(const Raster& raster, const Asked& asked, const SurfaceOption
   const std::string fit = asked.fit.value_or("interpolate");
   if (refines_surface(asked) && (budget.max_error > 0 || budget.vertices > 0)) {
     const std::string effort = asked.effort.value_or("normal");
-    terrain = refine_surface(raster,
-                             with_effort({.surface = surface.surface,
-                                          .max_error = budget.max_error,
-                                          .vertices = budget.vertices,
-                                          .heights_only = fit == "z-only"},
-                                         effort == "fast"   ? Effort::fast
-                                         : effort == "best" ? Effort::best
-                                                            : Effort::normal),
-                             context);
+    const SurfaceRefineOptions how = with_effort({.surface = surface.surface,
+                                                  .max_error = budget.max_error,
+                                                  .vertices = budget.vertices,
+                                                  .heights_only = fit == "z-only",
+                                                  .creases = asked.chosen_creases},
+                                                 effort == "fast"   ? Effort::fast
+                                                 : effort == "best" ? Effort::best
+                                                                    : Effort::normal);
+    if (asked.crease_lines.empty()) {
+      terrain = refine_surface(raster, how, context);
+    } else {
+      std::vector<std::vector<Vec2>> lines = asked.crease_lines;
+      for (std::vector<Vec2>& line : lines)
+        for (Vec2& p : line) p = raster.georef.to_local(p);
+      terrain = refine_along_lines(raster, lines, how, nullptr, context);
+    }
   } else {
     terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, context);
     if (fit != "interpolate")
@@ -164,18 +184,30 @@ std::vector<Vec3> localize(std::vector<Vec3> points, const std::string& crs, Geo
 
 using Lines = std::vector<std::vector<Vec3>>;
 
-/// Lines of shape (n, 2) - without heights: they lie on the flat surface of the points - or (n, 3).
-Lines lines_of(const py::object& breaklines) {
+/// Lines of shape (n, 2) - without heights: NaN - or (n, 3).
+Lines lines_of(const py::object& given, const char* name) {
   Lines lines;
-  if (breaklines.is_none()) return lines;
-  for (const py::handle line : breaklines) {
+  if (given.is_none()) return lines;
+  for (const py::handle line : given) {
     int dimension = 0;
-    std::vector<Vec3> places = as_points(py::reinterpret_borrow<py::object>(line), "breaklines", dimension);
+    std::vector<Vec3> places = as_points(py::reinterpret_borrow<py::object>(line), name, dimension);
     if (dimension == 2)
       for (Vec3& p : places) p.z = std::numeric_limits<double>::quiet_NaN();
     lines.push_back(std::move(places));
   }
   return lines;
+}
+
+/// creases: None, 'auto', or lines whose heights, if any, do not count.
+void take_creases(const py::object& creases, Asked& asked) {
+  if (py::isinstance<py::str>(creases)) {
+    asked.chosen_creases = choose("creases", creases.cast<std::string>(), {"none", "auto"}) == "auto";
+    return;
+  }
+  for (const std::vector<Vec3>& line : lines_of(creases, "creases")) {
+    std::vector<Vec2>& flat = asked.crease_lines.emplace_back();
+    for (const Vec3& p : line) flat.push_back({p.x, p.y});
+  }
 }
 
 Terrain fit_cloud(const std::vector<Vec3>& points, Lines lines, const Georef& georef, const Asked& asked,
@@ -217,10 +249,11 @@ void add_fit(py::module_& module) {
          std::optional<double> max_error, std::optional<long long> vertices, std::optional<double> ratio,
          const std::string& surface, std::optional<std::string> gradients, const std::string& cross_derivative,
          std::optional<std::string> fit, std::optional<std::string> refine, std::optional<std::string> effort,
-         int threads, const py::object& progress) {
-        const Asked asked{max_error,           ratio,          vertices,          surface,
-                          cross_derivative,    std::move(fit), std::move(refine), std::move(effort),
-                          std::move(gradients)};
+         const py::object& creases, int threads, const py::object& progress) {
+        Asked asked{max_error,           ratio,          vertices,          surface,
+                    cross_derivative,    std::move(fit), std::move(refine), std::move(effort),
+                    std::move(gradients)};
+        take_creases(creases, asked);
         const SurfaceOptions options = surface_options(asked, false);
         check_fit(asked);
         resolve(asked, 1, 1);  // bad options are told before the grid is read
@@ -233,7 +266,8 @@ void add_fit(py::module_& module) {
       py::arg("nodata") = py::none(), py::arg("max_error") = py::none(), py::arg("vertices") = py::none(),
       py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher", py::arg("gradients") = py::none(),
       py::arg("cross_derivative") = "perpendicular", py::arg("fit") = py::none(), py::arg("refine") = py::none(),
-      py::arg("effort") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("effort") = py::none(), py::arg("creases") = py::none(), py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
       "An elevation grid to a terrain model.\n\n"
       "z: heights of shape (rows, columns), rows from north (array-like, masked array, DataArray, Grid or path); NaN "
       "and masked cells hold no data. max_error: largest error of the surface at any valid cell, height "
@@ -243,7 +277,9 @@ void add_fit(py::module_& module) {
       "quadratic or network. fit: interpolate, least-squares or z-only. refine: surface (the vertices are chosen by "
       "the "
       "surface's own error and everything is fitted: what a smooth surface gets without gradients, fit or "
-      "cross_derivative) or flat. effort: fast, normal (default) or best, how long vertices are moved about. Raises "
+      "cross_derivative) or flat. effort: fast, normal (default) or best, how long vertices are moved about. creases: "
+      "edges that the surface may fold along, with vertices or ratio: auto (in place of vertices, where that is "
+      "nearer), or lines of shape (n, 2) in the CRS. Raises "
       "BadInput (a ValueError) for grids without area, UsageError (a ValueError) for options. About 40 us a cell, 5 "
       "with effort='fast', 0.5 with refine='flat'.");
   module.def(
@@ -261,7 +297,7 @@ void add_fit(py::module_& module) {
         asked.cross_derivative = cross_derivative;
         const SurfaceOptions options = surface_options(asked, true);
         resolve(asked, 1, 1);
-        Lines lines = lines_of(breaklines);
+        Lines lines = lines_of(breaklines, "breaklines");
         if (!lines.empty() && asked.budget())
           throw UsageError("breaklines keep every point: leave max_error, vertices and ratio out", {}, "breaklines");
         Georef georef;

@@ -106,3 +106,20 @@ def test_breaklines_are_the_programs(tmp_path: pathlib.Path, program: pathlib.Pa
         retalho.fit_points(points, breaklines=[ditch], max_error=1.0)
     with pytest.raises(ValueError, match="breaklines"):
         retalho.fit_points(points, breaklines=[[1, 2, 3, 4]])
+
+
+def test_a_grids_surface_folds_along_creases() -> None:
+    y, x = np.mgrid[0:41, 0:51]
+    z = 3 * np.abs(x - 25.0) + 0.5 * y  # a roof with its ridge at x = 25
+    ridge = np.array([[25.0, 0], [25, -40]])
+    plain, folded = retalho.fit(z, vertices=60, refine="surface"), retalho.fit(z, vertices=60, creases=[ridge])
+    assert folded.compare(z).max_error < 1e-5 < plain.compare(z).max_error
+    chosen = retalho.fit(z, vertices=60, creases="auto")
+    assert chosen.compare(z).rmse <= retalho.fit(z, vertices=60, creases="none").compare(z).rmse
+    for words, wrong in (("give vertices or ratio", {"max_error": 1.0}), ("fold", {"vertices": 60, "surface": "linear"}),
+                         ("fit='z-only'", {"vertices": 60, "fit": "z-only", "refine": "surface"}),
+                         ("refine='surface'", {"vertices": 60, "refine": "flat"})):
+        with pytest.raises(ValueError, match=words):
+            retalho.fit(z, creases="auto", **wrong)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="creases"):
+        retalho.fit(z, vertices=60, creases="some")
