@@ -83,7 +83,8 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags) {
       .add_option(
           "--fit", flags.fit,
           "Grids, --refine flat: interpolate the vertices (default there), least-squares: heights and gradients "
-          "fitted to every cell, or z-only: heights alone, with gradients that follow from them")
+          "fitted to every cell, or z-only: heights alone, with gradients that follow from them (also with --refine "
+          "surface and --vertices or --ratio, on better vertices)")
       ->type_name("KIND");
   command
       .add_option(
@@ -111,9 +112,10 @@ void add_crease_flags(CLI::App& command, SurfaceFlags& flags) {
   command
       .add_option(
           "--creases", flags.creases,
-          "Grids, --vertices or --ratio: edges that the surface may fold along, at house walls and shores: none "
-          "(default), auto: in place of vertices, where that is nearer to the grid at as many numbers, or a "
-          "vector layer with the lines")
+          "Grids, --vertices or --ratio: edges that the surface may fold along (ridges of roofs, kerbs, shores: a "
+          "fold, "
+          "no vertical wall): none (default), auto: in place of vertices, where that is nearer to the grid at as many "
+          "numbers, or a vector layer with the lines")
       ->type_name("auto|none|FILE");
   command.add_option("--crease-layer", flags.crease_layer, "Of --creases FILE: which layer")->type_name("NAME");
 }
@@ -199,7 +201,11 @@ bool refines_surface(const SurfaceFlags& flags, const BudgetFlags& budget, bool 
   }
   if (from_points) throw UsageError(fmt::format("{} takes grids", what), {}, "--refine");
   SurfaceFlags fitted = flags;
-  if (flags.fit != kFits[2]) fitted.fit = kFits[1];
+  if (flags.fit != kFits[2])
+    fitted.fit = kFits[1];
+  else if (!budget.given())
+    throw UsageError("--fit z-only --refine surface takes a number of vertices: give --vertices or --ratio", {},
+                     "--fit");
   resolve_fit(fitted, from_points);
   if (exact) throw UsageError(fmt::format("{} takes a --max-error over 0", what), {}, "--max-error");
   return true;

@@ -87,8 +87,10 @@ Model load_any_model(const std::string& path, ModelFileNotes* notes) {
 }
 
 std::size_t TileMemoryFlag::bytes() const {
-  if (megabytes < 1) throw UsageError("--tile-memory must be 1 MB or more", {}, "--tile-memory");
-  return megabytes << 20;
+  constexpr double kMost = 1 << 30;  // a million gigabytes: the number of bytes fits
+  if (!(megabytes >= 1 && megabytes <= kMost))
+    throw UsageError(fmt::format("--tile-memory must be 1 MB or more, not {:g}", megabytes), {}, "--tile-memory");
+  return static_cast<std::size_t>(megabytes) << 20;
 }
 
 void add_tile_memory_flag(CLI::App& command, TileMemoryFlag& flag) {

@@ -44,7 +44,7 @@ Model load_any_model(const std::string& path, ModelFileNotes* notes = nullptr);
 
 /// --tile-memory of the commands that read a tiled model by its tiles.
 struct TileMemoryFlag {
-  std::size_t megabytes = TileReader::kBound >> 20;
+  double megabytes = static_cast<double>(TileReader::kBound >> 20);
   std::size_t bytes() const;  ///< throws UsageError for less than 1 MB
 };
 void add_tile_memory_flag(CLI::App& command, TileMemoryFlag& flag);

@@ -98,13 +98,8 @@ bool can_stream(const Options& options) {
     if (!is_tiled_model(path)) return false;
   try {
     const Raster place = inspect_raster(options.dem, {.band = options.grid.band});
-    for (const std::string& path : options.models) {
-      const TiledIndex index = read_tiled_index(path);
-      if (index.columns != place.columns || index.rows != place.rows ||
-          index.georef.origin_x != place.georef.origin_x || index.georef.origin_y != place.georef.origin_y ||
-          index.cell_width != place.cell_width || index.cell_height != place.cell_height)
-        return false;
-    }
+    for (const std::string& path : options.models)
+      if (!same_grid(read_tiled_index(path), place)) return false;
   } catch (const BadInput&) {  // of a format without windows
     return false;
   }

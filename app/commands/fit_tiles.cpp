@@ -62,7 +62,8 @@ void fit_tiles(const Program& program, const TileFlags& flags, const std::string
   program.say(fmt::format("{}: {} x {} cells in {} x {} tiles", input, plan.frame.columns, plan.frame.rows,
                           plan.frame.tile_columns(), plan.frame.tile_rows()));
   const int side = std::min(options.size, std::max(plan.frame.columns, plan.frame.rows)) + 1;
-  check_tiles_need(side, flags.jobs > 0 ? flags.jobs : thread_count(context), input);
+  const int tiles = plan.frame.tile_columns() * plan.frame.tile_rows();
+  check_tiles_need(side, std::min(tiles, flags.jobs > 0 ? flags.jobs : thread_count(context)), input);
   const TiledIndex index = make_tiles(plan, output, flags.jobs, program.overwrite, context);
   std::size_t vertices = 0, triangles = 0, bytes = 0, empty = 0;
   for (const TileEntry& tile : index.tiles) {

@@ -238,6 +238,11 @@ py::dict write_mesh_of(const TiledModel& model, const py::object& path, double t
 ErrorReport compare(const TiledModel& model, const py::object& z, const Running& running) {
   if (py::isinstance<py::str>(z) || py::hasattr(z, "__fspath__")) {  // read by windows, too
     const std::string path = path_text(z);
+    if (!same_grid(model.index(), inspect_raster(path)))
+      throw BadInput(fmt::format("'{}' is not the grid that the model was made from: its size, its place or its cells "
+                                 "are others (Terrain.compare takes any grid)",
+                                 path),
+                     path, "z");
     return run(running, [&](const Context& context) {
       ReadOptions read;
       return assess_tiles(

@@ -115,6 +115,8 @@ ROWS = [
     # compare
     ("compare g.asc", 2, "give models to compare with the grid"), ("compare g.asc m.retalho --vertices 5", 2, "models and a budget"),
     ("compare g.asc m.retalho --markdown --csv", 2, "--json, --markdown and --csv exclude each other"),
+    ("compare g.asc m.retalho --tile-memory -5", 2, "--tile-memory must be 1 MB or more"), ("compare g.asc m.retalho --tile-memory 1e300", 2, "--tile-memory must be"),
+    ("fit g.asc -o o.retalho --fit z-only --refine surface", 2, "--fit z-only --refine surface takes a number of vertices"),
     ("compare g.asc m.retalho --visibility-maps maps", 2, "needs --visibility RADIUS"), ("compare g.asc m.retalho --tile-memory 0", 2, "--tile-memory must be 1 MB or more"),
     ("compare g.asc patch.retalho", 3, "holds no terrain: this command works on models made by"), ("compare utm32.vrt utm.retalho", 3, "bring one into the other's (gdalwarp) first"),
     ("compare g.asc m.retalho --visibility 100 --visibility-maps g.asc/x", 5, "cannot make the folder"),
@@ -170,7 +172,7 @@ ROWS = [
     ("contour g.asc -o o.gpkg --interval -5", 2, "--interval: '-5' is not a number above 0"), ("viewshed g.asc -o o.tif --radius -5", 2, "'-5' is not a number of 0 or more"), ("info g.asc --band 0", 2, "'0' is not a number above 0"),
     ("contour g.asc -o o.xyz --interval 5", 2, "must end in"), ("contour g.asc -o o.gpkg --interval 5 --conics", 2, "--conics writes curves"), ("contour g.asc -o o.json --interval 5 --conics --bands", 2, "--conics gives exact lines"),
     ("contour g.asc -o o.json --interval 5 --conics", 2, "--conics is for Powell-Sabin surfaces"),
-    ("fit g.asc -o o.retalho --max-error 1 --refine flat --effort best", 2, "--effort moves the vertices of a surface"), 
+    ("fit g.asc -o o.retalho --max-error 1 --refine flat --effort best", 2, "--effort moves the vertices of a surface"),
     ("fit g.asc -o o.retalho --max-error 0 --refine surface", 2, "takes a --max-error over 0"), ("fit g.asc -o o --tiles 3 --max-error 1", 2, "cells a side, not 3"), ("fit g.asc -o o --tiles 16 --vertices 3", 2, "the corners and outlines of the tiles alone are"),
     ("fit good.pgm -o o --tiles 16 --max-error 1", 3, "no part of an ASCII PGM can be read by itself"),
     ("viewshed void.asc -o o.tif --observer 1030,2030", 3, "holds no data: move the observer to a valid cell"), ("viewshed void.asc --observer 1030,2030 --to 1050,2050", 3, "holds no data"),

@@ -55,8 +55,8 @@ TEST(TileMemory, DoesNotGrowWithTheNumberOfTiles) {
     ASSERT_EQ(run(folder, fmt::format("fit {0}.tif -o {0} --tiles {1} --max-error 1 -q", name, kTile)).code, 0);
   }
   for (const char* command : {"contour {0} -o {0}.gpkg --interval 50 --threads 1 --tile-memory 1",
-                                                    "mesh {0} -o {0}.ply --tolerance 1 --threads 1 --tile-memory 1",
-                                                    "viewshed {0} -o {0}v.tif --observer 300,-300 --radius 200 --tile-memory 1",
+                              "mesh {0} -o {0}.ply --tolerance 1 --threads 1 --tile-memory 1",
+                              "viewshed {0} -o {0}v.tif --observer 300,-300 --radius 200 --tile-memory 1",
                               "viewshed {0} -o {0}x.tif --exact --observer 300,-300 --radius 200"}) {
     const double few = peak_megabytes(folder, fmt::format(fmt::runtime(command), "few")),
                  many = peak_megabytes(folder, fmt::format(fmt::runtime(command), "many"));

@@ -131,6 +131,9 @@ def test_errors_and_sight(folder: pathlib.Path) -> None:
         assert report.max_error == pytest.approx(expected.max_error, rel=1e-9)
     with pytest.raises(ValueError, match="shape"):
         tiled.compare(np.zeros((3, 4)))
+    retalho.Grid(np.zeros((300, 300)), transform=(7, 0, 0, 0, -7, 0)).write(dem.parent / "elsewhere.tif")
+    with pytest.raises(ValueError, match="is not the grid that the model was made from"):
+        tiled.compare(dem.parent / "elsewhere.tif")
     ends = ((500300, 4199600, 3), (500800, 4198500))
     fresh = retalho.TiledModel(folder)
     a, b = retalho.line_of_sight(joined, *ends), retalho.line_of_sight(fresh, *ends)

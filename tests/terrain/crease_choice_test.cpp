@@ -112,6 +112,33 @@ TEST(CreaseLines, ASurfaceFoldsAlongThem) {
   }
 }
 
+// Two houses share a wall: a line and the same line backwards are one, not two with needles between them.
+TEST(CreaseLines, ALineGivenTwiceIsOne) {
+  const Raster raster = valley();
+  std::vector<std::vector<Vec2>> lines = valley_line();
+  const Terrain once = refine_along_lines(raster, lines, {.vertices = 60});
+  lines.emplace_back(lines[0].rbegin(), lines[0].rend());
+  const Terrain twice = refine_along_lines(raster, lines, {.vertices = 60});
+  EXPECT_EQ(once.creases.size(), twice.creases.size());
+  EXPECT_LT(assess(twice, raster).max_error, 1e-4);
+  for (const auto& t : twice.tin.triangles) {
+    const Vec2 a = twice.tin.points[t[0]], b = twice.tin.points[t[1]], c = twice.tin.points[t[2]];
+    EXPECT_GT(cross(b - a, c - a), 1e-6);
+  }
+}
+
+// Vertices near the lines give way to them; what they leave of the budget goes elsewhere, and crossings count.
+TEST(CreaseLines, TheBudgetIsSpentAndKept) {
+  const Raster raster = valley();
+  std::vector<std::vector<Vec2>> lines = valley_line();
+  const double right = raster.columns - 1.0, low = 1.0 - raster.rows;
+  lines.push_back({{0, low / 3}, {right, low / 2}});
+  lines.push_back({{0, low / 2}, {right, low / 3}});
+  const Terrain terrain = refine_along_lines(raster, lines, {.vertices = 150});
+  EXPECT_LE(terrain.tin.vertex_count(), 150U);
+  EXPECT_GE(terrain.tin.vertex_count(), 140U);
+}
+
 TEST(CreaseLines, RefusesWhatItCannotFollow) {
   const Raster raster = valley();
   const auto words = [&](const SurfaceRefineOptions& options, std::vector<std::vector<Vec2>> lines) {

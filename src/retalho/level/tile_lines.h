@@ -22,8 +22,8 @@ SurfaceRange measure_range(const TileSource& tiles, const Context& context = {})
 /// tile at once, by level. Pieces join across seams in the same bits; where a line crosses a seam it keeps a vertex
 /// there, and is thinned on both sides by themselves: with options.simplify false the lines are trace_contours' to the
 /// bit, with it both are as close to the level set. `range`: measure_range's. Returns the set without its lines.
-/// Memory: tiles.at_once tiles with their lines, and the lines that still go on. The same from any number of threads.
-/// Throws as trace_contours.
+/// Memory: tiles.at_once tiles, the lines of twice as many, and those that still go on. The same from any number of
+/// threads. Throws as trace_contours.
 ContourSet stream_contours(const TileSource& tiles, const SurfaceRange& range, std::vector<double> levels,
                            const ContourOptions& options, const TakeContours& take, const Context& context = {},
                            ContourStats* stats = nullptr);

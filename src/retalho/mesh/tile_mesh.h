@@ -19,10 +19,10 @@ struct TileMeshFacts {
 
 /// Writes the mesh of mesh_terrain on all tiles as one terrain, in write_mesh's formats: the same triangles in the same
 /// order, vertices in the order in which the tiles use them, those on seams once. `tolerance`: above 0, height units.
-/// Memory: tiles.at_once tiles with their meshes (100 bytes a triangle), the vertices of the seams around one row of
-/// tiles, and 12 MB; while it is made, 48 bytes a vertex and 12 a triangle lie on disk beside `path`. The same bytes
-/// from any number of threads. Atomic. Throws as mesh_terrain and write_mesh do, and CannotRead where neighbours have
-/// other heights on their seam.
+/// Memory: tiles.at_once tiles, the meshes of twice as many (100 bytes a triangle), the vertices of the seams around
+/// one row of tiles, and 12 MB; while it is made, 48 bytes a vertex and 12 a triangle lie on disk beside `path`. The
+/// same bytes from any number of threads. Atomic. Throws as mesh_terrain and write_mesh do, and CannotRead where
+/// neighbours have other heights on their seam.
 TileMeshFacts write_tile_mesh(const TileSource& tiles, double tolerance, const std::string& path,
                               bool overwrite = false, const Context& context = {});
 

@@ -63,17 +63,20 @@ std::vector<Line> clipped(const Box& box, const std::vector<Vec2>& line) {
   std::vector<Line> parts;
   bool open = false;
   for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-    const Vec2 a = line[k], b = line[k + 1];
+    // Always from the lesser end, as with_steps: the same line backwards gets the same places.
+    const bool forward = line[k].x < line[k + 1].x || (line[k].x == line[k + 1].x && line[k].y <= line[k + 1].y);
+    const Vec2 a = forward ? line[k] : line[k + 1], b = forward ? line[k + 1] : line[k];
     const auto [from, to] = inside(box, a, b);
     if (!(from < to)) {
       open = false;
       continue;
     }
-    const Vec2 start = from > 0 ? box.nearest(a + from * (b - a)) : a;
-    const Vec2 end = to < 1 ? box.nearest(a + to * (b - a)) : b;
+    const Vec2 lesser = from > 0 ? box.nearest(a + from * (b - a)) : a;
+    const Vec2 greater = to < 1 ? box.nearest(a + to * (b - a)) : b;
+    const Vec2 start = forward ? lesser : greater, end = forward ? greater : lesser;
     if (!open) parts.push_back({{start.x, start.y, kNoHeight}});
     parts.back().push_back({end.x, end.y, kNoHeight});
-    open = to >= 1;
+    open = forward ? to >= 1 : from <= 0;
   }
   return parts;
 }
@@ -117,6 +120,25 @@ class Nearby {
   std::vector<char> near_;
 };
 
+/// The vertices of `base` without those within `reach` of a line, and the lines, which lie on `base`.
+ConstrainedTin among_lines(const Terrain& base, std::vector<Line>& lines, const Box& box, double reach,
+                           const Context& context) {
+  const TerrainEvaluator surface(base, context);
+  Nearby nearby(base.tin.points, reach);
+  for (Line& line : lines)
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      line[k].z = surface.value({line[k].x, line[k].y});
+      if (k > 0) nearby.mark({line[k - 1].x, line[k - 1].y}, {line[k].x, line[k].y});
+    }
+  std::vector<Vec3> points;
+  for (std::size_t v = 0; v < base.tin.vertex_count(); ++v) {
+    const Vec2 p = base.tin.points[v];
+    const bool corner = (p.x == box.low.x || p.x == box.high.x) && (p.y == box.low.y || p.y == box.high.y);
+    if (corner || !nearby.is_near(v)) points.push_back({p.x, p.y, base.tin.heights[v]});
+  }
+  return triangulate_points(points, lines, nullptr, nullptr, context);
+}
+
 }  // namespace
 
 Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec2>> given,
@@ -141,24 +163,25 @@ Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec
     throw UsageError(fmt::format("the lines to fold along need {} vertices of a budget of {}: give more", on_lines,
                                  options.vertices),
                      {}, "vertices");
+  // Vertices near the lines give way to them, and lines that cross get more: the rest of the budget is asked for again.
+  constexpr int kRounds = 4;
   SurfaceRefineOptions elsewhere = options;
   elsewhere.vertices -= on_lines;
   elsewhere.creases = elsewhere.heights_only = false;
-  const Terrain base = refine_surface(raster, elsewhere, context);
-  const TerrainEvaluator surface(base, context);
-  Nearby nearby(base.tin.points, cell / 2);
-  for (Line& line : lines)
-    for (std::size_t k = 0; k < line.size(); ++k) {
-      line[k].z = surface.value({line[k].x, line[k].y});
-      if (k > 0) nearby.mark({line[k - 1].x, line[k - 1].y}, {line[k].x, line[k].y});
-    }
-  std::vector<Vec3> points;
-  for (std::size_t v = 0; v < base.tin.vertex_count(); ++v) {
-    const Vec2 p = base.tin.points[v];
-    const bool corner = (p.x == box.low.x || p.x == box.high.x) && (p.y == box.low.y || p.y == box.high.y);
-    if (corner || !nearby.is_near(v)) points.push_back({p.x, p.y, base.tin.heights[v]});
+  ConstrainedTin made;
+  for (int round = 0; round < kRounds; ++round) {
+    ConstrainedTin tin = among_lines(refine_surface(raster, elsewhere, context), lines, box, cell / 2, context);
+    const std::size_t count = tin.tin.vertex_count();
+    if (count <= options.vertices && count > made.tin.vertex_count()) made = std::move(tin);
+    if (count <= options.vertices && options.vertices - count <= options.vertices / 50) break;
+    const std::size_t next = elsewhere.vertices + options.vertices;
+    if (next < count + 4) break;
+    elsewhere.vertices = next - count;
   }
-  ConstrainedTin made = triangulate_points(points, lines, nullptr, nullptr, context);
+  if (made.tin.triangles.empty())
+    throw UsageError(fmt::format("the lines to fold along and their crossings need more than the budget of {} vertices",
+                                 options.vertices),
+                     {}, "vertices");
   if (notes) *notes = {lines.size(), on_lines, made.edges.size()};
   SurfaceOptions how{.surface = options.surface, .creases = std::move(made.edges)};
   return fit_least_squares(make_terrain(std::move(made.tin), raster, how, context), raster,

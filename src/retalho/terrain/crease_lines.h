@@ -1,4 +1,4 @@
-// A grid's surface that folds along lines which are known: house walls, shores, kerbs.
+// A grid's surface that folds along lines which are known: ridges of roofs, shores, kerbs.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ struct CreaseLineNotes {
 /// and as many between as vertices elsewhere are apart. Triangles keep to the lines, all edges along them are creases,
 /// and heights and gradients of all sectors are fitted to all valid cells. `lines`: local coordinates; what lies
 /// outside of the box of the valid cells is cut off. Vertices within half a cell of a line give way to it. The numbers
-/// are those of the vertices, one for each crease and two for each further sector. The same from any number of threads. Throws as
-/// refine_surface and triangulate_points, UsageError for a tolerance, a flat surface, or lines that need more vertices
-/// than the budget has, BadInput where no line is inside.
+/// are those of the vertices, one for each crease and two for each further sector. The same from any number of threads.
+/// Throws as refine_surface and triangulate_points, UsageError for a tolerance, a flat surface, or lines that need more
+/// vertices than the budget has, BadInput where no line is inside.
 Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec2>> lines,
                            const SurfaceRefineOptions& options, CreaseLineNotes* notes = nullptr,
                            const Context& context = {});

@@ -4,9 +4,9 @@
 //   sum_k (S(x_k) - z_k)^2 + slope_weight sum_k |grad S(x_k) - D z_k|^2 + fairness int (Sxx^2 + 2 Sxy^2 + Syy^2)
 // over the valid cells k, lengths counted in cells (anisotropic cells: in square roots of a cell's area); D z are
 // central differences, over cells whose four neighbours are valid. The bending of a triangle whose smallest height h is
-// less than a cell counts h^4 times: else one step under an outline that is not convex outweighs the cells. Every ordinate of the surface is a linear function
-// of the 9 unknowns of its triangle, so the problem is a sparse symmetric system of 3 x 3 blocks, solved by conjugate
-// gradients; no row a cell is stored (docs/algorithms/smooth-fit.md).
+// less than a cell counts h^4 times: else one step under an outline that is not convex outweighs the cells. Every
+// ordinate of the surface is a linear function of the 9 unknowns of its triangle, so the problem is a sparse symmetric
+// system of 3 x 3 blocks, solved by conjugate gradients; no row a cell is stored (docs/algorithms/smooth-fit.md).
 #pragma once
 
 #include <cstdint>

@@ -263,6 +263,12 @@ Mask own_cells(const TiledIndex& index, const TileEntry& entry) {
 
 }  // namespace
 
+bool same_grid(const TiledIndex& index, const Raster& place) {
+  return index.columns == place.columns && index.rows == place.rows && index.georef.origin_x == place.georef.origin_x &&
+         index.georef.origin_y == place.georef.origin_y && index.cell_width == place.cell_width &&
+         index.cell_height == place.cell_height;
+}
+
 ErrorReport assess_tiles(TileReader& reader, const std::function<Raster(const CellWindow&)>& read, double tolerance,
                          TiledFacts* facts, const Context& context) {
   const TiledIndex& index = reader.index();

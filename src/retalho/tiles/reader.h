@@ -99,6 +99,10 @@ struct TiledFacts {
   GradientKind gradients = GradientKind::none;
 };
 
+/// Is `place` (inspect_raster) the very grid that the model was made from: its size, its place, its cells? Only then
+/// can the two be compared part by part.
+bool same_grid(const TiledIndex& index, const Raster& place);
+
 /// assess() on the joined model, tile by tile: `read(window)` gives the heights of a part of the grid that the model
 /// was made from. The same counts and largest error; sums but for rounding. Throws as assess, and BadInput for another
 /// grid.

@@ -225,9 +225,13 @@ std::vector<Vec3> with_steps(std::span<const Vec3> line, double longest) {
   for (std::size_t k = 0; k < line.size(); ++k) {
     dense.push_back(line[k]);
     if (k + 1 == line.size()) break;
-    const Vec3 along = line[k + 1] - line[k];
-    const double pieces = std::ceil(norm(Vec2{along.x, along.y}) / longest);
-    for (double i = 1; i < std::min(pieces, 1e6); ++i) dense.push_back(line[k] + (i / pieces) * along);
+    // Counted from the lesser end: a line and the same line backwards (two houses share a wall) get the same places, to
+    // the last bit. Places that differ by rounding would become vertices with needles between them.
+    const bool forward = line[k].x < line[k + 1].x || (line[k].x == line[k + 1].x && line[k].y <= line[k + 1].y);
+    const Vec3 &from = forward ? line[k] : line[k + 1], &to = forward ? line[k + 1] : line[k];
+    const Vec3 along = to - from;
+    const double pieces = std::min(1e6, std::ceil(norm(Vec2{along.x, along.y}) / longest));
+    for (double i = 1; i < pieces; ++i) dense.push_back(from + ((forward ? i : pieces - i) / pieces) * along);
   }
   return dense;
 }
