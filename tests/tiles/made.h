@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,16 @@ inline Raster hills(int columns, int rows, bool voids) {
     }
   raster.heights = std::move(heights);
   return raster;
+}
+
+/// A kind of tiled model, and how a test's name says it.
+struct TileCase {
+  bool voids;
+  SurfaceKind surface;
+  bool fitted;
+};
+inline void PrintTo(const TileCase& c, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest's name
+  *out << surface_name(c.surface) << (c.fitted ? " fitted" : "") << (c.voids ? " with voids" : "");
 }
 
 struct MadeTiles {

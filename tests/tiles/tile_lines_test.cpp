@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ostream>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -24,15 +23,7 @@ namespace retalho {
 namespace {
 
 using test::MadeTiles;
-
-struct Case {
-  bool voids;
-  SurfaceKind surface;
-  bool fitted;
-};
-void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
-  *out << surface_name(c.surface) << (c.fitted ? " fitted" : "") << (c.voids ? " with voids" : "");
-}
+using Case = test::TileCase;
 
 /// Level, closed, points; a closed line from its smallest point on.
 using Line = std::tuple<int, bool, std::vector<std::pair<double, double>>>;

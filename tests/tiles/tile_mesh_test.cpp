@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <ostream>
 #include <tuple>
 #include <vector>
 
@@ -23,15 +22,7 @@ namespace retalho {
 namespace {
 
 using test::MadeTiles;
-
-struct Case {
-  bool voids;
-  SurfaceKind surface;
-  bool fitted;
-};
-void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
-  *out << surface_name(c.surface) << (c.fitted ? " fitted" : "") << (c.voids ? " with voids" : "");
-}
+using Case = test::TileCase;
 
 using Corner = std::tuple<double, double, double>;
 Corner corner(const TriangleMesh& mesh, std::uint32_t v) {
