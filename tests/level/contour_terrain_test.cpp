@@ -140,6 +140,46 @@ TEST(TerrainContours, TheSameBytesFromAnyNumberOfThreads) {
   EXPECT_EQ(one.lines.size(), many.lines.size());
 }
 
+/// What conics and polylines of the same levels must agree about.
+struct Measured {
+  std::vector<double> length;  ///< by level
+  std::size_t closed = 0;
+};
+
+/// Measures the conics by 64 chords a segment; segments of a line share their ends. visit(line, k, place) sees chord
+/// k's end.
+template <class Visit>
+Measured measure(const ConicSet& set, const Visit& visit) {
+  Measured m{std::vector<double>(set.levels.size(), 0)};
+  for (const ConicLine& line : set.lines) {
+    m.closed += line.curve.closed ? 1 : 0;
+    for (std::size_t i = 0; i < line.curve.segment_count(); ++i) {
+      const CurveSegment s = line.curve.segment(i);
+      if (i > 0) {
+        EXPECT_EQ(s.points[0], line.curve.segment(i - 1).points[2]);
+      }
+      Vec3 last = s.points[0];
+      for (int k = 1; k <= 64; ++k) {
+        const Vec3 p = evaluate(s, k / 64.0);
+        visit(line, k, Vec2{p.x, p.y});
+        m.length[static_cast<std::size_t>(line.level)] += norm(p - last);
+        last = p;
+      }
+    }
+  }
+  return m;
+}
+
+void expect_alike(const Measured& conics, const ContourSet& lines, double slack) {
+  Measured traced{std::vector<double>(conics.length.size(), 0)};
+  for (const ContourLine& line : lines.lines) traced.closed += line.closed ? 1 : 0;
+  for (const test::Segment& s : test::segments(lines))
+    traced.length[static_cast<std::size_t>(s.level)] += norm(s.b - s.a);
+  EXPECT_EQ(conics.closed, traced.closed);
+  for (std::size_t k = 0; k < traced.length.size(); ++k)
+    EXPECT_NEAR(conics.length[k], traced.length[k], 0.002 * traced.length[k] + slack);
+}
+
 TEST(Conics, LieOnTheSurfaceAndAreTheSameLines) {
   test::Random random;
   for (int round = 0; round < 20; ++round) {
@@ -150,32 +190,12 @@ TEST(Conics, LieOnTheSurfaceAndAreTheSameLines) {
     const ContourSet lines = trace_contours(t, levels, {.tolerance = 1e-4, .simplify = false});
     ASSERT_EQ(set.lines.size(), lines.lines.size());
     const TerrainEvaluator surface(t);
-    std::vector<double> length(levels.size(), 0), traced(levels.size(), 0);
-    std::size_t closed = 0, closed_traced = 0;
-    for (const ConicLine& line : set.lines) {
-      closed += line.curve.closed ? 1 : 0;
-      for (std::size_t i = 0; i < line.curve.segment_count(); ++i) {
-        const CurveSegment s = line.curve.segment(i);
-        Vec3 before = s.points[0];
-        for (int k = 1; k <= 64; ++k) {
-          const Vec3 p = evaluate(s, k / 64.0);
-          if (k % 16 == 8) {
-            // A gradient here is 1e3, and so is what one quantum of an ordinate may weigh.
-            EXPECT_NEAR(surface.value({p.x, p.y}), levels[static_cast<std::size_t>(line.level)],
-                        40 * set.height_quantum);
-          }
-          length[static_cast<std::size_t>(line.level)] += norm(p - before);
-          before = p;
-        }
-        if (i > 0) {
-          EXPECT_EQ(s.points[0], line.curve.segment(i - 1).points[2]);
-        }
-      }
-    }
-    for (const ContourLine& line : lines.lines) closed_traced += line.closed ? 1 : 0;
-    for (const test::Segment& s : test::segments(lines)) traced[static_cast<std::size_t>(s.level)] += norm(s.b - s.a);
-    EXPECT_EQ(closed, closed_traced);
-    for (std::size_t k = 0; k < levels.size(); ++k) EXPECT_NEAR(length[k], traced[k], 0.002 * traced[k] + 1e-3);
+    const auto on_the_surface = [&](const ConicLine& line, int k, Vec2 p) {
+      if (k % 16 != 8) return;
+      // A gradient here is 1e3, and so is what one quantum of an ordinate may weigh.
+      EXPECT_NEAR(surface.value(p), levels[static_cast<std::size_t>(line.level)], 40 * set.height_quantum);
+    };
+    expect_alike(measure(set, on_the_surface), lines, 1e-3);
   }
 }
 
@@ -231,34 +251,17 @@ TEST(Conics, EndWhereThereIsNoData) {
       return half(p.x, t.grid.cell_width) || half(-p.y, t.grid.cell_height) || std::abs(p.x) < near ||
              std::abs(p.x - 1) < near || std::abs(p.y) < near || std::abs(p.y + 1) < near;
     };
-    std::vector<double> length(levels.size(), 0), traced(levels.size(), 0);
-    std::size_t closed = 0, closed_traced = 0;
+    const auto where_data_is = [&](const ConicLine&, int, Vec2 p) { EXPECT_TRUE(data(p.x, p.y)) << p.x << ' ' << p.y; };
+    const Measured conics = measure(set, where_data_is);
     for (const ConicLine& line : set.lines) {
-      closed += line.curve.closed ? 1 : 0;
-      for (std::size_t i = 0; i < line.curve.segment_count(); ++i) {
-        const CurveSegment s = line.curve.segment(i);
-        Vec3 before = s.points[0];
-        if (i > 0) {
-          EXPECT_EQ(s.points[0], line.curve.segment(i - 1).points[2]);
-        }
-        for (int k = 1; k <= 64; ++k) {
-          const Vec3 p = evaluate(s, k / 64.0);
-          EXPECT_TRUE(data(p.x, p.y)) << p.x << ' ' << p.y;
-          length[static_cast<std::size_t>(line.level)] += norm(p - before);
-          before = p;
-        }
-      }
       if (line.curve.closed) continue;
       EXPECT_TRUE(on_side(line.curve.points.front()));
       EXPECT_TRUE(on_side(line.curve.points.back()));
     }
-    for (const ContourLine& line : lines.lines) closed_traced += line.closed ? 1 : 0;
-    for (const test::Segment& s : test::segments(lines)) traced[static_cast<std::size_t>(s.level)] += norm(s.b - s.a);
-    EXPECT_EQ(closed, closed_traced);
-    EXPECT_GT(closed, 0U);
+    EXPECT_GT(conics.closed, 0U);
     EXPECT_NEAR(static_cast<double>(set.lines.size()), static_cast<double>(lines.lines.size()),
                 0.01 * static_cast<double>(lines.lines.size()));  // a polyline may cut a corner that its conic misses
-    for (std::size_t k = 0; k < levels.size(); ++k) EXPECT_NEAR(length[k], traced[k], 0.002 * traced[k] + 2e-3);
+    expect_alike(conics, lines, 2e-3);
   }
 }
 

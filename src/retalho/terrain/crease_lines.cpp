@@ -11,6 +11,7 @@
 #include "retalho/core/error.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/terrain/fit_state.h"
 #include "retalho/terrain/fit_tolerance.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/tin/breaklines.h"
@@ -29,11 +30,9 @@ struct Box {
   Vec2 nearest(Vec2 p) const { return {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y)}; }
 };
 
-Box box_of_valid(const Raster& raster) {
+Box box_of(const Raster& raster) {
   Box box;
-  for (int r = 0; r < raster.rows; ++r)
-    for (int c = 0; c < raster.columns; ++c)
-      if (raster.valid(c, r)) box.add(raster.centre(c, r));
+  for (const greedy::Cell c : box_of_valid(raster)) box.add(raster.centre(greedy::column_of(c), greedy::row_of(c)));
   return box;
 }
 
@@ -63,8 +62,7 @@ std::vector<Line> clipped(const Box& box, const std::vector<Vec2>& line) {
   std::vector<Line> parts;
   bool open = false;
   for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-    // Always from the lesser end, as with_steps: the same line backwards gets the same places.
-    const bool forward = line[k].x < line[k + 1].x || (line[k].x == line[k + 1].x && line[k].y <= line[k + 1].y);
+    const bool forward = from_lesser_end(line[k], line[k + 1]);
     const Vec2 a = forward ? line[k] : line[k + 1], b = forward ? line[k + 1] : line[k];
     const auto [from, to] = inside(box, a, b);
     if (!(from < to)) {
@@ -147,7 +145,7 @@ Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec
     throw UsageError("a surface along lines takes a budget of vertices, and no largest error", {}, "vertices");
   if (options.surface == SurfaceKind::linear)
     throw UsageError("lines to fold along are for smooth surfaces: a flat one folds along every edge", {}, "surface");
-  const Box box = box_of_valid(raster);
+  const Box box = box_of(raster);
   const Vec2 extent = box.high - box.low;
   const double cell = std::sqrt(raster.cell_width * raster.cell_height);
   const double spacing = std::max(cell, std::sqrt(extent.x * extent.y / static_cast<double>(options.vertices)));

@@ -9,10 +9,6 @@
 #include "retalho/tin/grid_hull.h"
 
 namespace retalho {
-namespace {
-
-/// The box of the valid cells. Its corners are vertices even where they are void: the slivers along the slanting sides
-/// of a hull would spoil the surface there.
 std::vector<greedy::Cell> box_of_valid(const Raster& raster) {
   const std::vector<greedy::Cell> hull = greedy::hull_of_valid(raster);
   int left = raster.columns, right = 0, top = raster.rows, bottom = 0;
@@ -25,8 +21,6 @@ std::vector<greedy::Cell> box_of_valid(const Raster& raster) {
   using greedy::cell_at;
   return {cell_at(left, top), cell_at(right, top), cell_at(right, bottom), cell_at(left, bottom)};
 }
-
-}  // namespace
 
 FitState::FitState(const Raster& raster, SurfaceKind surface, const Context& context)
     : FitState(raster, surface, CellMesh(box_of_valid(raster)), context) {}

@@ -12,6 +12,9 @@
 #include "retalho/tin/cell_mesh.h"
 
 namespace retalho {
+/// The corners of the box of the valid cells. They are vertices even where they are void: the slivers along the
+/// slanting sides of a hull would spoil the surface there. Throws as hull_of_valid.
+std::vector<greedy::Cell> box_of_valid(const Raster& raster);
 
 struct FitState {
   SurfaceKind kind;

@@ -225,9 +225,8 @@ std::vector<Vec3> with_steps(std::span<const Vec3> line, double longest) {
   for (std::size_t k = 0; k < line.size(); ++k) {
     dense.push_back(line[k]);
     if (k + 1 == line.size()) break;
-    // Counted from the lesser end: a line and the same line backwards (two houses share a wall) get the same places, to
-    // the last bit. Places that differ by rounding would become vertices with needles between them.
-    const bool forward = line[k].x < line[k + 1].x || (line[k].x == line[k + 1].x && line[k].y <= line[k + 1].y);
+    // Two houses share a wall: places that differ by rounding would become vertices with needles between them.
+    const bool forward = from_lesser_end(plan(line[k]), plan(line[k + 1]));
     const Vec3 &from = forward ? line[k] : line[k + 1], &to = forward ? line[k + 1] : line[k];
     const Vec3 along = to - from;
     const double pieces = std::min(1e6, std::ceil(norm(Vec2{along.x, along.y}) / longest));

@@ -26,6 +26,12 @@ struct ConstrainedTin {
   std::vector<std::uint32_t> edges;  ///< on a breakline: numbers of build_edges(tin), ascending
 };
 
+/// Does a segment run from its lesser end (in the order of x, then y)? Places on it are counted from there, so that a
+/// line and the same line backwards get the same ones, to the last bit.
+inline bool from_lesser_end(Vec2 from, Vec2 to) {
+  return from.x < to.x || (from.x == to.x && from.y <= to.y);
+}
+
 /// The line with vertices put in, at equal distances, so that no step in plan is longer than `longest` (> 0). A crease
 /// fades out over its last edge: a line of few long segments would hardly fold the surface.
 std::vector<Vec3> with_steps(std::span<const Vec3> line, double longest);
