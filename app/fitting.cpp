@@ -113,9 +113,9 @@ void add_crease_flags(CLI::App& command, SurfaceFlags& flags) {
       .add_option(
           "--creases", flags.creases,
           "Grids, --vertices or --ratio: edges that the surface may fold along (ridges of roofs, kerbs, shores: a "
-          "fold, "
-          "no vertical wall): none (default), auto: in place of vertices, where that is nearer to the grid at as many "
-          "numbers, or a vector layer with the lines")
+          "fold, no vertical wall): none (default), auto: in place of vertices, where that is nearer to the grid at as "
+          "many numbers, or a vector layer with the lines. --format compact: auto (the default with --max-error) folds "
+          "at vertices where that saves bytes, none keeps the surface smooth")
       ->type_name("auto|none|FILE");
   command.add_option("--crease-layer", flags.crease_layer, "Of --creases FILE: which layer")->type_name("NAME");
 }
@@ -124,12 +124,11 @@ CreaseKind resolve_creases(const SurfaceFlags& flags, const BudgetFlags& budget,
   const bool none = flags.creases.empty() || flags.creases == "none";
   if (!flags.crease_layer.empty() && (none || flags.creases == kAuto))
     throw UsageError("--crease-layer goes with --creases FILE", {}, "--crease-layer");
-  if (none) return CreaseKind::none;
+  if (none || compact_format(flags)) return CreaseKind::none;  // compact_options judges for the compact form
   const auto refuse = [](const std::string& what, const char* where) {
     throw UsageError("--creases " + what, {}, where);
   };
   if (from_points) refuse("takes grids: --breaklines says where a surface of points folds", "--creases");
-  if (compact_format(flags)) refuse("writes exact models: the compact form has no place for creases", "--format");
   if (budget.max_error || !budget.given())
     refuse("goes with a budget: give --vertices or --ratio, and no --max-error", "--creases");
   if (flags.surface == kSurfaces[0]) refuse("is for smooth surfaces: a flat one folds along every edge", "--surface");
@@ -156,13 +155,19 @@ std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from
     refuse("takes --cross-derivative perpendicular", "--cross-derivative");
   if (!flags.refine.empty()) choose("--refine", flags.refine, kRefinements);
   const bool z_only = resolve_fit(flags, from_points) == FitKind::z_only;
+  std::optional<bool> folds;
+  if (!flags.crease_layer.empty() || (!flags.creases.empty() && flags.creases != "none" && flags.creases != kAuto))
+    refuse("folds at vertices that it chooses: give --creases auto or none", "--creases");
+  if (!flags.creases.empty()) folds = flags.creases == kAuto;
   if (flags.surface == kAuto)
-    return {{.surface = SurfaceKind::clough_tocher, .effort = effort},
+    return {{.surface = SurfaceKind::clough_tocher, .folds = folds, .effort = effort},
             {.surface = SurfaceKind::linear, .effort = effort}};
   const auto kind = static_cast<SurfaceKind>(choose("--surface", flags.surface, kSurfaces) + 1);
   if (kind == SurfaceKind::powell_sabin) refuse("holds linear and clough-tocher surfaces", "--surface");
   if (z_only && kind == SurfaceKind::linear) refuse("--fit z-only is for clough-tocher", "--fit");
-  return {{.surface = kind, .heights_only = z_only, .effort = effort}};
+  if (folds.value_or(false) && (z_only || kind == SurfaceKind::linear))
+    refuse("folds vertices that have gradients: --creases auto is for --surface clough-tocher", "--creases");
+  return {{.surface = kind, .heights_only = z_only, .folds = folds, .effort = effort}};
 }
 
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points) {

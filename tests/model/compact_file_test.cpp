@@ -23,6 +23,7 @@
 #include "retalho/model/model.h"
 #include "retalho/raster/crs_code.h"
 #include "retalho/raster/io.h"
+#include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/report.h"
 #include "support/grids.h"
 #include "support/support.h"
@@ -57,12 +58,13 @@ class NoisySource : public ValueSource {
 struct Sample {
   CompactFrameFacts facts;
   std::vector<Cell> cells;
+  std::vector<std::uint8_t> folded = {};
   std::uint64_t seed = 1;
   double rough = 1;
 
   CompactEncoding encode() const {
     NoisySource source(cells, seed, rough);
-    return encode_compact(facts, cells, source);
+    return encode_compact(facts, cells, source, {}, folded);
   }
 };
 
@@ -86,8 +88,37 @@ Sample sample(SurfaceKind kind, bool heights_only, bool masked) {
 }
 
 std::vector<Sample> samples() {
-  return {sample(SurfaceKind::linear, false, true), sample(SurfaceKind::clough_tocher, false, false),
-          sample(SurfaceKind::clough_tocher, true, true)};
+  std::vector<Sample> result{sample(SurfaceKind::linear, false, true), sample(SurfaceKind::clough_tocher, false, false),
+                             sample(SurfaceKind::clough_tocher, true, true),
+                             sample(SurfaceKind::clough_tocher, false, false)};
+  result.back().folded = {0, 1, 1, 0, 0, 0, 1};
+  return result;
+}
+
+TEST(CompactFile, SaysThatItIsOfTheFirstFormWhereNoVertexIsFolded) {
+  Sample s = sample(SurfaceKind::clough_tocher, false, false);
+  const std::string smooth = s.encode().bytes;
+  s.folded.assign(s.cells.size(), 0);
+  EXPECT_EQ(s.encode().bytes, smooth);
+  EXPECT_EQ(smooth[4], 1);
+  s.folded[3] = 1;
+  const CompactEncoding folded = s.encode();
+  EXPECT_EQ(folded.bytes[4], 2);
+  EXPECT_FALSE(folded.terrain.creases.empty());
+}
+
+TEST(CompactFile, AllVerticesFoldedAreTheFlatSurface) {
+  Sample s = sample(SurfaceKind::clough_tocher, false, false);
+  s.folded.assign(s.cells.size(), 1);
+  const Terrain folded = std::get<Terrain>(decode_model(s.encode().bytes));
+  Terrain flat = folded;
+  flat.kind = SurfaceKind::linear;
+  flat.gradients.clear();
+  flat.creases.clear();
+  flat.corner_gradients.clear();
+  const TerrainEvaluator a(folded), b(flat);
+  for (double x = 0; x <= 26; x += 0.7)
+    for (double y = -25; y <= 0; y += 0.9) EXPECT_NEAR(a.value({x, y}), b.value({x, y}), 1e-9);
 }
 
 TEST(CompactFile, EveryProperPrefixIsRefused) {
@@ -174,6 +205,9 @@ RC_GTEST_PROP(CompactFileProperty, WhatIsReadIsWhatWasWritten, ()) {
   RC_PRE(s.cells.size() >= 3 && std::any_of(s.cells.begin(), s.cells.end(), [&](Cell c) {
            return greedy::area2(s.cells.front(), s.cells.back(), c) != 0;
          }));
+  if (s.facts.kind == SurfaceKind::clough_tocher && !s.facts.heights_only)
+    for (std::size_t k = *rc::gen::element(0, 1) * s.cells.size(); k > 0; --k)
+      s.folded.push_back(*rc::gen::element<std::uint8_t>(0, 0, 1));
   s.facts.steps = {*rc::gen::element(1e-3, 0.37, 5.0, 4e4), static_cast<std::uint8_t>(*rc::gen::inRange(0, 17)),
                    static_cast<std::uint8_t>(*rc::gen::inRange(1, 60))};
   s.facts.reference = *rc::gen::element(0.0, 500.0, -12.5);
@@ -247,7 +281,7 @@ TEST(CompactFit, TheSameBytesFromAnyNumberOfThreads) {
   for (const CompactOptions& options :
        {CompactOptions{.surface = SurfaceKind::clough_tocher, .max_error = 1},
         CompactOptions{.surface = SurfaceKind::linear, .max_error = 1}, CompactOptions{.vertices = 150},
-        CompactOptions{.heights_only = true, .vertices = 150}}) {
+        CompactOptions{.vertices = 150, .folds = true}, CompactOptions{.heights_only = true, .vertices = 150}}) {
     Context one, three;
     one.threads = 1;
     three.threads = 3;
@@ -292,6 +326,20 @@ TEST(CompactFit, SlopesInTheFitMakeSlopesTruerForNoMoreBytes) {
   EXPECT_LT(with.rmse, 1.05 * without.rmse);
 }
 
+TEST(CompactFit, FoldsWhereTheGroundHasSteps) {
+  // A plateau over waves: its rim is a wall of one cell.
+  const Raster raster = test::make_grid(120, 90, [](int x, int y) {
+    const bool inside = (x - 60) * (x - 60) + 2 * (y - 45) * (y - 45) < 1600;
+    return (inside ? 30.0 : 0.0) + 4 * std::sin(x / 9.0) * std::cos(y / 11.0);
+  });
+  const auto bytes = [&](const CompactOptions& options) { return fit_compact(raster, options).bytes; };
+  const std::string folded = bytes({.max_error = 1}), smooth = bytes({.max_error = 1, .folds = false});
+  EXPECT_EQ(folded[4], 2);
+  EXPECT_EQ(smooth[4], 1);
+  EXPECT_LT(static_cast<double>(folded.size()), 0.9 * static_cast<double>(smooth.size()));
+  EXPECT_FALSE(std::get<Terrain>(decode_model(folded)).creases.empty());
+}
+
 TEST(CompactFit, RefusesWhatMakesNoSense) {
   const Raster raster = hills(20, 20, false);
   EXPECT_THROW(fit_compact(raster, {}), UsageError);
@@ -299,6 +347,8 @@ TEST(CompactFit, RefusesWhatMakesNoSense) {
   EXPECT_THROW(fit_compact(raster, {.max_error = -1}), UsageError);
   EXPECT_THROW(fit_compact(raster, {.surface = SurfaceKind::powell_sabin, .max_error = 1}), UsageError);
   EXPECT_THROW(fit_compact(raster, {.heights_only = true, .max_error = 1}), UsageError);
+  EXPECT_THROW(fit_compact(raster, {.surface = SurfaceKind::linear, .max_error = 1, .folds = true}), UsageError);
+  EXPECT_THROW(fit_compact(raster, {.heights_only = true, .vertices = 50, .folds = true}), UsageError);
   EXPECT_THROW(fit_compact(raster, {.max_error = 1e-12}), BadInput);
 }
 

@@ -197,7 +197,7 @@ TEST(CompactParts, PredictionsAreTheCloughTocherSurfaceOfTheFacetsNormals) {
     const Terrain terrain = make_terrain(tin, Georef{}, {.surface = SurfaceKind::clough_tocher});
     std::vector<VertexJet> data;
     for (const double z : tin.heights) data.push_back({z, 0, 0});
-    facet_gradients(tin.points, tin.triangles, data);
+    facet_gradients(tin.points, tin.triangles, {}, data);
     for (std::size_t v = 0; v < data.size(); ++v) {
       ASSERT_NEAR(data[v][1], terrain.gradients[v].x, 1e-9);
       ASSERT_NEAR(data[v][2], terrain.gradients[v].y, 1e-9);

@@ -12,6 +12,7 @@
 #include "retalho/model/compact_file.h"
 #include "retalho/model/compact_tolerance.h"
 #include "retalho/model/fit_source.h"
+#include "retalho/terrain/folded_surface.h"
 #include "retalho/terrain/held_fit.h"
 #include "retalho/terrain/report.h"
 
@@ -34,6 +35,8 @@ void check(const CompactOptions& o) {
     throw UsageError(fmt::format("the largest error must be 0 or more, not {}", o.max_error), {}, "max_error");
   if (!(o.height_step >= 0) || std::isinf(o.height_step))
     throw UsageError(fmt::format("the height step must be 0 or more, not {}", o.height_step), {}, "height_step");
+  if (o.folds.value_or(false) && (o.surface == SurfaceKind::linear || o.heights_only))
+    throw UsageError("only vertices with gradients of their own can be folded", {}, "folds");
   if (!(o.slope_weight >= 0) || std::isinf(o.slope_weight))
     throw UsageError(fmt::format("the slope weight must be 0 or more, not {}", o.slope_weight), {}, "slope_weight");
 }
@@ -96,24 +99,19 @@ void set_steps(CompactFrameFacts& facts, double step, double mean, std::size_t v
   facts.reference = short_number(std::round(mean / step) * step, 4);
 }
 
-CompactEncoding encode(HeldFit& fit, const CompactFrameFacts& facts, const std::vector<Cell>& cells,
-                       const Context& context) {
-  FitSource source(fit);
-  return encode_compact(facts, cells, source, context);
-}
-
-CompactModel by_budget(const std::vector<Cell>& cells, const Raster& raster, const CompactOptions& options,
+CompactModel by_budget(const FoldedVertices& vertices, const Raster& raster, const CompactOptions& options,
                        const Context& context) {
   constexpr double kStep = 1.5;  // of the fit's error
   CompactFrameFacts facts = facts_of(raster, options);
-  HeldFit fit(raster, cells, fit_options(options), context);
+  HeldFit fit(raster, vertices.cells, fit_options(options), context, vertices.folded);
   fit.solve(kTight);
   const double step = options.height_step > 0 ? options.height_step : kStep * rmse_of(fit.errors());
   const RasterSummary summary = summarize(raster);
   const double range = summary.maximum - summary.minimum;
   const double least = range > 0 ? range / kMostSteps : 1;
-  set_steps(facts, std::max(step, least), summary.mean, cells.size());
-  CompactEncoding encoding = encode(fit, facts, cells, context);
+  set_steps(facts, std::max(step, least), summary.mean, vertices.cells.size());
+  FitSource source(fit);
+  CompactEncoding encoding = encode_compact(facts, vertices.cells, source, context, vertices.folded);
   return {std::move(encoding.bytes), std::move(encoding.terrain)};
 }
 
@@ -124,7 +122,7 @@ struct Rounding {
 };
 constexpr Rounding kSmooth[] = {{0.4, 20}, {0.5, 20}, {0.6, 15}}, kFlat[] = {{0.5, 20}, {0.65, 20}};
 
-CompactModel by_tolerance(const std::vector<Cell>& cells, const Raster& raster, const CompactOptions& options,
+CompactModel by_tolerance(const FoldedVertices& vertices, const Raster& raster, const CompactOptions& options,
                           const Context& context) {
   const RasterSummary summary = summarize(raster);
   if (options.max_error * kMostSteps < summary.maximum - summary.minimum)
@@ -134,14 +132,14 @@ CompactModel by_tolerance(const std::vector<Cell>& cells, const Raster& raster, 
                    {}, "max_error");
   CompactFrameFacts facts = facts_of(raster, options);
   // Half a step must stay under the tolerance, for the smallest star too (half a cell).
-  const double mean_star = static_cast<double>(raster.cells()) / static_cast<double>(cells.size());
+  const double mean_star = static_cast<double>(raster.cells()) / static_cast<double>(vertices.cells.size());
   const auto coarsest = [&](double step, int crowding) { return step * std::pow(2 * mean_star, crowding / 16.0); };
   CompactModel best;
   const auto attempt = [&](double step, double margin) {
     facts.steps.crowding = coarsest(step, 2) < 1.8 * options.max_error ? 2 : 0;
-    set_steps(facts, step, summary.mean, cells.size());
+    set_steps(facts, step, summary.mean, vertices.cells.size());
     CompactEncoding made =
-        encode_within(options.max_error * (1 - margin), cells, raster, facts, fit_options(options), context);
+        encode_within(options.max_error * (1 - margin), vertices, raster, facts, fit_options(options), context);
     if (assess(made.terrain, raster, options.max_error, context).violations > 0) return;
     if (best.bytes.empty() || made.bytes.size() < best.bytes.size())
       best = {std::move(made.bytes), std::move(made.terrain)};
@@ -166,7 +164,7 @@ CompactModel compact_terrain(const Terrain& terrain, const Raster& raster, const
                              const Context& context) {
   if (!terrain.creases.empty()) throw UsageError("the compact form has no place for creases: save the exact model");
   check(options);
-  return by_budget(cells_of(terrain, raster), raster, options, context);
+  return by_budget({cells_of(terrain, raster), {}}, raster, options, context);
 }
 
 CompactModel fit_compact(const Raster& raster, const CompactOptions& options, const Context& context) {
@@ -181,9 +179,12 @@ CompactModel fit_compact(const Raster& raster, const CompactOptions& options, co
                                      .max_error = options.max_error,
                                      .vertices = options.vertices,
                                      .slope_weight = options.slope_weight};
-  const Terrain terrain = refine_surface(raster, with_effort(refined, options.effort), context);
-  return options.max_error > 0 ? by_tolerance(cells_of(terrain, raster), raster, options, context)
-                               : by_budget(cells_of(terrain, raster), raster, options, context);
+  const SurfaceRefineOptions wanted = with_effort(refined, options.effort);
+  const bool folds = options.folds.value_or(options.max_error > 0) && placed == SurfaceKind::clough_tocher;
+  const FoldedVertices vertices = folds ? refine_folded(raster, wanted, context)
+                                        : FoldedVertices{cells_of(refine_surface(raster, wanted, context), raster), {}};
+  return options.max_error > 0 ? by_tolerance(vertices, raster, options, context)
+                               : by_budget(vertices, raster, options, context);
 }
 
 }  // namespace retalho

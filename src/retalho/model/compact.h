@@ -20,6 +20,9 @@ struct CompactOptions {
   std::size_t vertices = 0;   ///< the budget, 0: none. With a budget and max_error the error may be larger
   double height_step = 0;     ///< 0: chosen, by max_error or else by the fit's own error
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions; not of heights_only
+  std::optional<bool> folds = {};  ///< clough_tocher: may vertices be folded (terrain/folded_surface.h)? If not, the
+                                   ///< surface is smooth everywhere. Unset: with max_error, where it saves bytes, yes;
+                                   ///< with a budget no. Not of heights_only
   Effort effort = Effort::normal;  ///< of the refinement
 };
 

@@ -150,6 +150,44 @@ std::vector<Cell> code_vertices(BitCoder& coder, int columns, int rows, std::siz
   return found;
 }
 
+std::vector<std::uint8_t> code_folds(BitCoder& coder, const CellTriangulation& finest,
+                                     const std::vector<std::uint8_t>& folded) {
+  const std::size_t count = finest.vertex.size();
+  std::vector<double> twice(count, 0.0);  // the triangles of each, by the mesh's numbers
+  double total = 0;
+  for (const auto& t : finest.mesh.triangles()) {
+    const auto at = [&](std::size_t k) { return finest.mesh.cell(t[k]); };
+    const auto area = static_cast<double>(greedy::area2(at(0), at(2), at(1)));
+    for (const std::uint32_t v : t) twice[v] += area;
+    total += 3 * area;
+  }
+  const double mean = total / static_cast<double>(count);
+  std::vector<AdaptiveBit> near(4 * 4 * 8, {0.1}), crowd(8 * 4, {0.1}), share(64, {0.1});
+  std::vector<Mixer> mixers(16, Mixer(3, 0.4, 0.01));
+  std::vector<std::uint8_t> result(count, 0);
+  CellMesh::Star star;
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const std::uint32_t k = finest.number[v];
+    finest.mesh.star(k, star);
+    std::size_t folds = 0, known = 0;
+    for (const std::uint32_t n : star.ring) {
+      const std::uint32_t w = finest.vertex[n];
+      if (w >= v) continue;
+      ++known;
+      folds += result[w];
+    }
+    const auto size = static_cast<std::size_t>(std::clamp(4 + log2_class(twice[k] / mean, 1), 0, 7));
+    const std::size_t f = std::min<std::size_t>(folds, 3), s = std::min<std::size_t>(known - folds, 3);
+    const bool bit =
+        code_mixed<3>(coder, coder.writing() && folded[v] != 0,
+                      {&near[(f * 4 + s) * 8 + size], &crowd[size * 4 + f],
+                       &share[std::min<std::size_t>(folds, 7) * 8 + std::min<std::size_t>(known - folds, 7)]},
+                      mixers[f * 4 + s], 255);
+    result[v] = bit ? 1 : 0;
+  }
+  return result;
+}
+
 Mask code_mask(BitCoder& coder, int columns, int rows, const Mask& mask) {
   Mask result(columns, rows, false);
   std::vector<AdaptiveBit> bits(1 << 10);

@@ -13,6 +13,7 @@
 #include "retalho/model/compact_cells.h"
 #include "retalho/model/numbers.h"
 #include "retalho/raster/crs_code.h"
+#include "retalho/terrain/folded_surface.h"
 
 namespace retalho {
 namespace {
@@ -32,9 +33,9 @@ std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(XXH64_digest(&state));
 }
 
-std::string seal_compact(std::string_view content) {
+std::string seal_compact(std::string_view content, int version) {
   std::string out(kSignature);
-  out.push_back(static_cast<char>(kCompactVersion));
+  out.push_back(static_cast<char>(version));
   out.append(4, '\0');
   ByteWriter size;
   size.varint(content.size());
@@ -64,13 +65,13 @@ std::string_view unseal_compact(std::string_view bytes) {
   for (std::size_t k = 0; k < 4; ++k)
     stored |= std::uint32_t{static_cast<unsigned char>(bytes[kHashAt + k])} << (8 * k);
   if (stored != checksum(bytes)) throw CannotRead("damaged: the checksum does not fit the content", {}, "checksum");
-  if (bytes[4] != static_cast<char>(kCompactVersion)) throw CannotRead("there is no compact form 0", {}, "format");
+  if (bytes[4] == 0) throw CannotRead("there is no compact form 0", {}, "format");
   return reader.rest();
 }
 
 // --- header ----------------------------------------------------------------------------------------------------------
 
-constexpr unsigned kSurface = 3, kHeightsOnly = 4, kGeographic = 8, kMasked = 16;  // of the kind's byte
+constexpr unsigned kSurface = 3, kHeightsOnly = 4, kGeographic = 8, kMasked = 16, kFolded = 32;  // of the kind's byte
 enum class CrsForm : std::uint8_t { none = 0, epsg = 1, wkt = 2 };
 
 void write_crs(ByteWriter& out, const std::string& wkt) {
@@ -106,9 +107,10 @@ std::string read_crs(ByteReader& in) {
   throw CannotRead("the CRS is stored in a form that this Retalho does not know", {}, kWhat);
 }
 
-void write_header(ByteWriter& out, const CompactFrameFacts& f, std::size_t vertices) {
+void write_header(ByteWriter& out, const CompactFrameFacts& f, std::size_t vertices, bool folds) {
   out.byte(static_cast<std::uint8_t>(static_cast<unsigned>(f.kind) | (f.heights_only ? kHeightsOnly : 0U) |
-                                     (f.georef.geographic ? kGeographic : 0U) | (f.grid.valid.empty() ? 0U : kMasked)));
+                                     (f.georef.geographic ? kGeographic : 0U) | (f.grid.valid.empty() ? 0U : kMasked) |
+                                     (folds ? kFolded : 0U)));
   out.varint(static_cast<std::uint64_t>(f.grid.columns));
   out.varint(static_cast<std::uint64_t>(f.grid.rows));
   out.varint(vertices);
@@ -121,14 +123,15 @@ void write_header(ByteWriter& out, const CompactFrameFacts& f, std::size_t verti
   write_crs(out, f.georef.crs_wkt);
 }
 
-CompactFrameFacts read_header(ByteReader& in, std::uint64_t& vertices) {
+CompactFrameFacts read_header(ByteReader& in, std::uint64_t& vertices, bool& folds) {
   CompactFrameFacts f;
   const std::uint8_t kind = in.byte("kind");
   f.kind = static_cast<SurfaceKind>(kind & kSurface);
   f.heights_only = (kind & kHeightsOnly) != 0;
   f.georef.geographic = (kind & kGeographic) != 0;
-  if (kind >= 32 || (f.kind != SurfaceKind::linear && f.kind != SurfaceKind::clough_tocher) ||
-      (f.heights_only && f.kind == SurfaceKind::linear))
+  folds = (kind & kFolded) != 0;
+  if (kind >= 64 || (f.kind != SurfaceKind::linear && f.kind != SurfaceKind::clough_tocher) ||
+      ((f.heights_only || folds) && f.kind == SurfaceKind::linear) || (f.heights_only && folds))
     throw CannotRead(
         fmt::format("it holds a kind of surface ({}) that this Retalho does not know: update Retalho", kind), {},
         "surface");
@@ -179,6 +182,7 @@ std::string fault_of(const CompactFrameFacts& f) {
 
 struct Payload {
   std::vector<Cell> cells;
+  std::vector<std::uint8_t> folded;  ///< empty: none
   Mask mask;
   std::vector<CellLevel> levels;
   std::vector<VertexJet> values;
@@ -191,12 +195,13 @@ Vec2 lattice_step(const GridDomain& grid) {
 
 /// Everything behind the header, written or read.
 Payload code_payload(BitCoder& coder, const CompactFrameFacts& f, std::size_t vertices, const std::vector<Cell>& cells,
-                     ValueSource* source, const Context& context) {
+                     bool folds, const std::vector<std::uint8_t>& folded, ValueSource* source, const Context& context) {
   Payload p;
   if (!f.grid.valid.empty()) p.mask = code_mask(coder, f.grid.columns, f.grid.rows, f.grid.valid);
   p.cells = code_vertices(coder, f.grid.columns, f.grid.rows, vertices, cells);
   p.levels = make_levels(p.cells, context);
-  const CompactFrame frame{p.cells, p.levels, lattice_step(f.grid), f.reference};
+  if (folds) p.folded = code_folds(coder, p.levels.back(), folded);
+  const CompactFrame frame{p.cells, p.levels, p.folded, lattice_step(f.grid), f.reference};
   const bool gradients = f.kind == SurfaceKind::clough_tocher && !f.heights_only;
   p.values = code_values(coder, frame, f.steps, gradients, source, context);
   return p;
@@ -219,7 +224,7 @@ Terrain assemble(const CompactFrameFacts& f, Payload& p) {
       points.push_back({greedy::column_of(p.cells[v]) * step.x, -greedy::row_of(p.cells[v]) * step.y});
       data.push_back(p.values[v]);
     }
-    facet_gradients(points, finest.mesh.triangles(), data);
+    facet_gradients(points, finest.mesh.triangles(), {}, data);
     for (std::size_t k = 0; k < data.size(); ++k) p.values[finest.vertex[k]] = data[k];
   }
   for (std::size_t v = 0; v < p.cells.size(); ++v) {
@@ -238,6 +243,12 @@ Terrain assemble(const CompactFrameFacts& f, Payload& p) {
   }
   std::sort(terrain.tin.triangles.begin(), terrain.tin.triangles.end());
   build_neighbors(terrain.tin);
+  if (std::find(p.folded.begin(), p.folded.end(), 1) != p.folded.end()) {
+    FoldedSurface surface = folded_surface(terrain.tin, p.folded, terrain.gradients);
+    terrain.creases = std::move(surface.creases);
+    terrain.gradients = std::move(surface.gradients);
+    if (!terrain.creases.empty()) terrain.corner_gradients = std::move(surface.sectors);
+  }
   return terrain;
 }
 
@@ -248,23 +259,24 @@ bool has_compact_signature(std::string_view bytes) {
 }
 
 CompactEncoding encode_compact(const CompactFrameFacts& facts, const std::vector<Cell>& cells, ValueSource& source,
-                               const Context& context) {
+                               const Context& context, const std::vector<std::uint8_t>& folded) {
   if (const std::string fault = fault_of(facts); !fault.empty())
     throw BadInput("this terrain has no compact form: " + fault);
   ByteWriter header;
-  write_header(header, facts, cells.size());
+  bool folds = std::find(folded.begin(), folded.end(), 1) != folded.end();
+  write_header(header, facts, cells.size(), folds);
   const std::string padded = header.bytes() + std::string(cells.size() / kVerticesAByte, '\0');
   ByteReader again(padded);
   std::uint64_t vertices = 0;
-  CompactFrameFacts read = read_header(again, vertices);  // what the reader will know: -0 is 0
+  CompactFrameFacts read = read_header(again, vertices, folds);  // what the reader will know: -0 is 0
   read.grid.valid = facts.grid.valid;
   BitCoder coder;
-  Payload payload = code_payload(coder, read, cells.size(), cells, &source, context);
+  Payload payload = code_payload(coder, read, cells.size(), cells, folds, folded, &source, context);
   CompactEncoding result;
   std::string content = header.bytes() + coder.finish();
   const std::uint64_t least = cells.size() > kFreeVertices ? (cells.size() - kFreeVertices) / kVerticesAByte + 1 : 0;
   if (content.size() - header.bytes().size() < least) content.resize(header.bytes().size() + least, '\0');
-  result.bytes = seal_compact(content);
+  result.bytes = seal_compact(content, folds ? 2 : 1);
   result.terrain = assemble(read, payload);
   if (const std::string fault = find_fault(result.terrain, true); !fault.empty())
     throw BadInput("this terrain has no compact form: " + fault);
@@ -274,11 +286,12 @@ CompactEncoding encode_compact(const CompactFrameFacts& facts, const std::vector
 Terrain decode_compact(std::string_view bytes) {
   ByteReader reader(unseal_compact(bytes));
   std::uint64_t vertices = 0;
-  const CompactFrameFacts facts = read_header(reader, vertices);
+  bool folds = false;
+  const CompactFrameFacts facts = read_header(reader, vertices, folds);
   if (const std::string fault = fault_of(facts); !fault.empty()) throw CannotRead("no terrain: " + fault, {}, "header");
   BitCoder coder(reader.rest());
   try {
-    Payload payload = code_payload(coder, facts, vertices, {}, nullptr, {});
+    Payload payload = code_payload(coder, facts, vertices, {}, folds, {}, nullptr, {});
     Terrain terrain = assemble(facts, payload);
     if (const std::string fault = find_fault(terrain, true); !fault.empty())
       throw CannotRead("no terrain: " + fault, {}, "surface");

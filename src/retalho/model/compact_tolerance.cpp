@@ -22,7 +22,7 @@ constexpr double kThrift = 8;
 
 class Loop {
  public:
-  Loop(double tolerance, std::vector<Cell> cells, const Raster& raster, const CompactFrameFacts& facts,
+  Loop(double tolerance, FoldedVertices vertices, const Raster& raster, const CompactFrameFacts& facts,
        const HeldFitOptions& options, const Context& context)
       : tolerance_(tolerance),
         raster_(raster),
@@ -30,8 +30,9 @@ class Loop {
         options_(options),
         context_(context),
         gradients_(options.surface == SurfaceKind::clough_tocher && !options.heights_only),
-        cells_(std::move(cells)),
-        fit_(raster, cells_, options, context) {}
+        cells_(std::move(vertices.cells)),
+        folded_(std::move(vertices.folded)),
+        fit_(raster, cells_, options, context, folded_) {}
 
   CompactEncoding run() {
     fit_.solve(kTight);
@@ -41,7 +42,7 @@ class Loop {
     // Its size sets a rate below: without the CRS, whose text is no part of what is weighed there.
     CompactFrameFacts bare = facts_;
     bare.georef.crs_wkt.clear();
-    const CompactEncoding first = encode_compact(bare, cells_, source, context_);
+    const CompactEncoding first = encode_compact(bare, cells_, source, context_, folded_);
     measure_steps();
     for (int round = 0;; ++round) {
       context_.check();
@@ -56,7 +57,7 @@ class Loop {
     for (const double e : fit_.errors())
       if (!std::isnan(e)) squares += (e / tolerance_) * (e / tolerance_);
     ThriftySource thrifty(fit_, tolerance_, kThrift * squares / (8.0 * static_cast<double>(first.bytes.size())));
-    return encode_compact(facts_, cells_, thrifty, context_);
+    return encode_compact(facts_, cells_, thrifty, context_, folded_);
   }
 
  private:
@@ -97,7 +98,7 @@ class Loop {
         to_height = z;
         to_gradient = slope;
       };
-      const int far = pinned ? 0 : 1, wide = gradients_ ? 1 : 0;
+      const int far = pinned ? 0 : 1, wide = gradients_ && !fit_.is_folded(v) ? 1 : 0;
       for (int a = -far; a <= far; ++a)
         for (int b = -wide; b <= wide; ++b)
           for (int c = -wide; c <= wide; ++c)
@@ -124,8 +125,11 @@ class Loop {
       if (pin && std::abs(errors[at]) > tolerance_) pinned_.push_back(c);
     }
     std::map<Cell, VertexJet> values;
-    for (std::uint32_t v = 0; v < cells_.size(); ++v)
+    std::map<Cell, std::uint8_t> folds;
+    for (std::uint32_t v = 0; v < cells_.size(); ++v) {
       values[cells_[v]] = {fit_.height(v), fit_.gradient(v).x, fit_.gradient(v).y};
+      if (!folded_.empty()) folds[cells_[v]] = folded_[v];
+    }
     for (const Cell c : added) {
       values[c] = {cell_height(c) + errors[raster_.index(greedy::column_of(c), greedy::row_of(c))], 0, 0};
       if (pin) pinned_.push_back(c);
@@ -135,9 +139,14 @@ class Loop {
     if (weights_.empty()) weights_.assign(raster_.cells(), 1.0F);
     for (std::size_t k = 0; k < errors.size(); ++k)
       if (std::abs(errors[k]) > tolerance_) weights_[k] = std::min(1e4F, std::max(weights_[k], 20.0F) * 2);
+    const bool folding = !folded_.empty();
     cells_.clear();
-    for (const auto& [cell, value] : values) cells_.push_back(cell);
-    fit_ = HeldFit(raster_, cells_, options_, context_);
+    folded_.clear();
+    for (const auto& [cell, value] : values) {
+      cells_.push_back(cell);
+      if (folding) folded_.push_back(folds[cell]);
+    }
+    fit_ = HeldFit(raster_, cells_, options_, context_, folded_);
     fit_.set_cell_weights(weights_);
     measure_steps();
     for (std::uint32_t v = 0; v < cells_.size(); ++v) {
@@ -161,7 +170,7 @@ class Loop {
 
   void hold(std::uint32_t v, double height, Vec2 gradient) {
     fit_.hold_height(v, on_lattice(height, steps_.height[v]));
-    if (!gradients_) return;
+    if (!gradients_ || fit_.is_folded(v)) return;
     fit_.hold_gradient(
         v, {LatticeSteps::nearest(gradient.x, steps_.slope[v]), LatticeSteps::nearest(gradient.y, steps_.slope[v])});
   }
@@ -173,6 +182,7 @@ class Loop {
   const Context& context_;
   bool gradients_;
   std::vector<Cell> cells_, pinned_;
+  std::vector<std::uint8_t> folded_;  // empty: none
   HeldFit fit_;
   LatticeSteps steps_;
   std::vector<float> weights_;
@@ -180,9 +190,9 @@ class Loop {
 
 }  // namespace
 
-CompactEncoding encode_within(double tolerance, std::vector<Cell> cells, const Raster& raster,
+CompactEncoding encode_within(double tolerance, FoldedVertices vertices, const Raster& raster,
                               const CompactFrameFacts& facts, const HeldFitOptions& options, const Context& context) {
-  return Loop(tolerance, std::move(cells), raster, facts, options, context).run();
+  return Loop(tolerance, std::move(vertices), raster, facts, options, context).run();
 }
 
 }  // namespace retalho

@@ -145,8 +145,16 @@ class Values {
       data.push_back(data_[v]);
       points.push_back(points_[v]);
     }
-    facet_gradients(points, level.mesh.triangles(), data);
+    facet_gradients(points, level.mesh.triangles(), folds_of(level), data);
     return data;
+  }
+
+  /// Which of a level's vertices are folded, by its numbers.
+  std::vector<std::uint8_t> folds_of(const CellLevel& level) const {
+    std::vector<std::uint8_t> folds;
+    if (!frame_.folded.empty())
+      for (const std::uint32_t v : level.vertex) folds.push_back(frame_.folded[v]);
+    return folds;
   }
 
   void level(std::size_t l) {
@@ -161,8 +169,9 @@ class Values {
       near = coarse.mesh.locate(frame_.cells[v], near);
       const auto& t = coarse.mesh.triangles()[near];
       const auto place = [&](std::size_t k) { return points_[coarse.vertex[t[k]]]; };
-      const double prediction = clough_tocher_height({place(0), place(1), place(2)},
-                                                     {surface[t[0]], surface[t[1]], surface[t[2]]}, points_[v]);
+      std::array<VertexJet, 3> jets{surface[t[0]], surface[t[1]], surface[t[2]]};
+      fold_jets({place(0), place(1), place(2)}, folded_at(coarse, t), jets);
+      const double prediction = clough_tocher_height({place(0), place(1), place(2)}, jets, points_[v]);
       here.mesh.star(here.number[v], star);
       double sides = 0, rough = 0;
       int rough_count = 0;
@@ -191,6 +200,13 @@ class Values {
     }
   }
 
+  std::array<bool, 3> folded_at(const CellLevel& level, const std::array<std::uint32_t, 3>& t) const {
+    std::array<bool, 3> result{};
+    if (!frame_.folded.empty())
+      for (std::size_t k = 0; k < 3; ++k) result[k] = frame_.folded[level.vertex[t[k]]] != 0;
+    return result;
+  }
+
   BitCoder& coder_;
   const CompactFrame& frame_;
   const CompactSteps& steps_;
@@ -215,8 +231,9 @@ void Values::gradients(const Context& context) {
     points.push_back(points_[v]);
     data.push_back(data_[v]);
   }
-  facet_gradients(points, finest.mesh.triangles(), data);
-  const Bending bending(points, finest.mesh.triangles());
+  const std::vector<std::uint8_t> folds = folds_of(finest);
+  facet_gradients(points, finest.mesh.triangles(), folds, data);
+  const Bending bending(points, finest.mesh.triangles(), folds);
   std::vector<std::uint8_t> held(count_, 0);
   std::vector<double> missed(count_, 0.0);  // how far each gradient was from its prediction
   Lately ratio;
@@ -235,6 +252,7 @@ void Values::gradients(const Context& context) {
     bending.relax(data, held);
     if (source_) source_->settle();
     for (const std::uint32_t v : list) {
+      if (!frame_.folded.empty() && frame_.folded[v] != 0) continue;
       const std::uint32_t k = finest.number[v];
       finest.mesh.star(k, star);
       double rough = 2 * roughness_[v], weights = 2, near = 0;

@@ -40,8 +40,9 @@ class ValueSource {
 struct CompactFrame {
   std::span<const greedy::Cell> cells;  ///< ascending
   std::span<const CellLevel> levels;
-  Vec2 step;             ///< of a cell, step.x * step.y = 1
-  double reference = 0;  ///< about the mean height
+  std::span<const std::uint8_t> folded;  ///< 1: the vertex has no gradient (terrain/folded_surface.h); empty: none
+  Vec2 step;                             ///< of a cell, step.x * step.y = 1
+  double reference = 0;                  ///< about the mean height
 };
 
 /// The steps of every vertex's height and gradient: they follow from the positions.

@@ -118,15 +118,25 @@ double clough_tocher_height(const std::array<Vec2, 3>& v, const std::array<Verte
          3 * s * t * (n[7] * s + n[8] * t) + n[9] * t * t * t;
 }
 
-void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std::vector<VertexJet>& data) {
+void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std::span<const std::uint8_t> folded,
+                     std::vector<VertexJet>& data) {
   std::vector<double> area(data.size(), 0.0);
+  std::vector<std::uint8_t> smooth(data.size(), 0);  // has a triangle without a folded corner
+  const auto has_fold = [&](const std::array<std::uint32_t, 3>& t) {
+    return !folded.empty() && (folded[t[0]] != 0 || folded[t[1]] != 0 || folded[t[2]] != 0);
+  };
+  for (const auto& t : triangles)
+    if (!has_fold(t))
+      for (const std::uint32_t v : t) smooth[v] = 1;
   for (VertexJet& u : data) u[1] = u[2] = 0;
   for (const auto& t : triangles) {
+    const bool fold = has_fold(t);
     const Vec2 a = points[t[0]], b = points[t[1]], c = points[t[2]];
     const double zb = data[t[1]][0] - data[t[0]][0], zc = data[t[2]][0] - data[t[0]][0];
     const double gx = zb * (c.y - a.y) - zc * (b.y - a.y), gy = zc * (b.x - a.x) - zb * (c.x - a.x);
     const double twice = cross_of(a, b, c);
     for (const std::uint32_t v : t) {
+      if (fold && smooth[v] != 0) continue;
       area[v] += twice;
       data[v][1] += gx;
       data[v][2] += gy;
@@ -139,7 +149,16 @@ void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std
   }
 }
 
-Bending::Bending(std::span<const Vec2> points, IndexTriangles triangles)
+void fold_jets(const std::array<Vec2, 3>& v, const std::array<bool, 3>& folded, std::array<VertexJet, 3>& data) {
+  if (!folded[0] && !folded[1] && !folded[2]) return;
+  const double zb = data[1][0] - data[0][0], zc = data[2][0] - data[0][0], twice = cross_of(v[0], v[1], v[2]);
+  const double gx = (zb * (v[2].y - v[0].y) - zc * (v[1].y - v[0].y)) / twice;
+  const double gy = (zc * (v[1].x - v[0].x) - zb * (v[2].x - v[0].x)) / twice;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (folded[k]) data[k] = {data[k][0], gx, gy};
+}
+
+Bending::Bending(std::span<const Vec2> points, IndexTriangles triangles, std::span<const std::uint8_t> folded)
     : count_(points.size()), begin_(count_ + 1, 0) {
   std::vector<std::vector<std::uint32_t>> rows(count_);
   for (std::uint32_t v = 0; v < count_; ++v) rows[v].push_back(v);
@@ -156,7 +175,10 @@ Bending::Bending(std::span<const Vec2> points, IndexTriangles triangles)
   }
   block_.resize(vertex_.size());
   for (const auto& t : triangles) {
-    const Matrix9 m = bending_of({points[t[0]], points[t[1]], points[t[2]]});
+    Matrix9 m = bending_of({points[t[0]], points[t[1]], points[t[2]]});
+    if (!folded.empty() && (folded[t[0]] != 0 || folded[t[1]] != 0 || folded[t[2]] != 0))
+      for (auto& row : m)
+        for (double& entry : row) entry /= 1024;
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b) {
         const auto row = rows[t[a]].begin();

@@ -21,13 +21,19 @@ double clough_tocher_height(const std::array<Vec2, 3>& corner, const std::array<
 
 using IndexTriangles = std::span<const std::array<std::uint32_t, 3>>;
 
-/// Sets every vertex's gradient to the mean of its triangles' slopes, weighted by area.
-void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std::vector<VertexJet>& data);
+/// Sets every vertex's gradient to the mean of its triangles' slopes, weighted by area: of those without a folded
+/// corner (1 in `folded`; empty: none is), where it has one.
+void facet_gradients(std::span<const Vec2> points, IndexTriangles triangles, std::span<const std::uint8_t> folded,
+                     std::vector<VertexJet>& data);
+
+/// Gives the folded corners of a triangle the slope of the plane through its heights.
+void fold_jets(const std::array<Vec2, 3>& corner, const std::array<bool, 3>& folded, std::array<VertexJet, 3>& data);
 
 /// The bending of the surface, int Sxx^2 + 2 Sxy^2 + Syy^2, as a function of the gradients.
 class Bending {
  public:
-  Bending(std::span<const Vec2> points, IndexTriangles triangles);
+  /// Triangles with a folded corner count 1/1024: enough for a vertex that has no others.
+  Bending(std::span<const Vec2> points, IndexTriangles triangles, std::span<const std::uint8_t> folded = {});
   /// Sets the gradients of the vertices that are not `held` to those of least bending, from where they are, by
   /// conjugate gradients (their residual falls by 1e-5, at most 200 steps). Cost: about 1 us a vertex and step.
   void relax(std::vector<VertexJet>& data, const std::vector<std::uint8_t>& held) const;

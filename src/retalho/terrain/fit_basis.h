@@ -17,6 +17,7 @@ struct FitTriangle {
   Corners at;                                  ///< cell coordinates
   Corners corner;                              ///< units of the fit
   std::array<double, 3> split{0.5, 0.5, 0.5};  ///< Powell-Sabin: of edge k, from the end with the lower vertex number
+  std::uint8_t folded = 0;                     ///< Clough-Tocher: bit k is corner k (folds.h)
 };
 
 /// The element of a kind on given corner data.

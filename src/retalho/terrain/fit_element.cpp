@@ -1,5 +1,7 @@
 #include "retalho/terrain/fit_element.h"
 
+#include "retalho/terrain/folds.h"
+
 namespace retalho {
 namespace {
 
@@ -145,8 +147,11 @@ FitElement fit_element(SurfaceKind kind, const FitTriangle& triangle, const FitG
   switch (kind) {
     case SurfaceKind::powell_sabin:
       return assemble<PowellSabinElement>(triangle, grid, weights);
-    case SurfaceKind::clough_tocher:
-      return assemble<CloughTocherElement>(triangle, grid, weights);
+    case SurfaceKind::clough_tocher: {
+      FitElement element = assemble<CloughTocherElement>(triangle, grid, weights);
+      fold_element(triangle.corner, triangle.folded, element);
+      return element;
+    }
     default:
       return assemble<LinearElement>(triangle, grid, weights);
   }

@@ -18,8 +18,12 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
 
 /// One sweep over all vertices: each may step in one of 8 directions to where its star, with the vertex's own data
 /// solved for, costs least. Then Delaunay again, a solve, and everything put back if the objective rose.
-/// `reach`: the step as a share of sqrt(star area / 3). True if it helped.
+/// `reach`: the step as a share of sqrt(star area / 3); 0: none. Where vertices may be folded, each may become so or
+/// cease to be. True if it helped.
 bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context);
+
+/// Where vertices may be folded: those become so or cease to be for which that pays, at the price as it is now.
+void refold(FitState& state, const Context& context);
 
 /// Removes up to `count` vertices off the outline whose stars cost least, no two of them neighbours.
 void remove_cheapest(FitState& state, std::size_t count, const Context& context);

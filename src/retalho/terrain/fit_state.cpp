@@ -6,6 +6,8 @@
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/creases.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/terrain/folded_surface.h"
+#include "retalho/terrain/folds.h"
 #include "retalho/tin/grid_hull.h"
 
 namespace retalho {
@@ -43,6 +45,8 @@ FitTriangle FitState::triangle(std::uint32_t t, std::uint32_t moved, Vec2 to) co
     result.at[k] = place(result.vertex[k]);
     result.corner[k] = grid.place(result.at[k]);
   }
+  for (std::size_t k = 0; k < 3; ++k)
+    if (is_folded(result.vertex[k])) result.folded |= static_cast<std::uint8_t>(1U << k);
   if (kind != SurfaceKind::powell_sabin) return result;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t n = mesh.neighbors()[t][k];
@@ -59,7 +63,12 @@ FitTriangle FitState::triangle(std::uint32_t t, std::uint32_t moved, Vec2 to) co
 
 CornerData FitState::corner_data(std::uint32_t t) const {
   const auto& v = mesh.triangles()[t];
-  return {data[v[0]], data[v[1]], data[v[2]]};
+  CornerData corners{data[v[0]], data[v[1]], data[v[2]]};
+  if (!folded.empty()) {
+    const FitTriangle here = triangle(t);
+    fold_corners(here.corner, here.folded, corners);
+  }
+  return corners;
 }
 
 void FitState::refresh(const Context& context, bool all) {
@@ -104,7 +113,16 @@ std::vector<double> FitState::costs(const Context& context) const {
 
 double FitState::cost(const Context& context) const {
   const std::vector<double> all = costs(context);
-  return std::accumulate(all.begin(), all.end(), 0.0);
+  const auto gradients = static_cast<double>(std::count(folded.begin(), folded.end(), 0));
+  return std::accumulate(all.begin(), all.end(), 0.0) + gradient_price * gradients;
+}
+
+void FitState::set_gradient_price() {
+  if (folded.empty()) return;
+  const auto gradients = static_cast<double>(std::count(folded.begin(), folded.end(), 0));
+  const double cost_alone = cost({}) - gradient_price * gradients;
+  const double numbers = 3 * static_cast<double>(folded.size()) + 2 * gradients;
+  gradient_price = 1.5 * cost_alone / numbers;
 }
 
 Vec3 FitState::surface_at(std::uint32_t t, CellMesh::Cell cell) const {
@@ -137,6 +155,7 @@ bool FitState::insert(CellMesh::Cell cell, std::uint32_t t, Vec3 at) {
   if (mesh.insert(cell, t) == kNone) return false;
   data.push_back(at);
   pinned.push_back(0);
+  if (!folded.empty()) folded.push_back(0);
   return true;
 }
 
@@ -146,6 +165,9 @@ bool FitState::remove(std::uint32_t vertex) {
   data.pop_back();
   pinned[vertex] = pinned.back();
   pinned.pop_back();
+  if (folded.empty()) return true;
+  folded[vertex] = folded.back();
+  folded.pop_back();
   return true;
 }
 
@@ -159,7 +181,9 @@ Terrain to_terrain(const FitState& state, const Raster& raster, const Context& c
   for (std::uint32_t k = 0; k < n; ++k) number[order[k]] = k;
   Tin tin;
   std::vector<Vec2> gradients;
+  std::vector<std::uint8_t> folds;
   for (const std::uint32_t v : order) {
+    if (!state.folded.empty()) folds.push_back(state.folded[v]);
     const CellMesh::Cell cell = state.mesh.cell(v);
     const int column = greedy::column_of(cell), row = greedy::row_of(cell);
     tin.points.push_back(raster.centre(column, row));
@@ -186,6 +210,12 @@ Terrain to_terrain(const FitState& state, const Raster& raster, const Context& c
     const auto sectors = crease_sectors(tin, edges, options.creases, &nodes);
     const std::vector<std::uint32_t> vertex = sector_vertices(tin, sectors, nodes);
     for (std::size_t k = n; k < nodes; ++k) gradients.push_back(gradients[vertex[k]]);
+  }
+  if (std::find(folds.begin(), folds.end(), 1) != folds.end()) {
+    build_neighbors(tin);
+    FoldedSurface surface = folded_surface(tin, folds, gradients);
+    options.creases = std::move(surface.creases);
+    gradients = std::move(surface.gradients);
   }
   if (state.kind != SurfaceKind::linear) options.given = std::move(gradients);
   Terrain terrain = make_terrain(std::move(tin), raster, options, context);

@@ -22,6 +22,8 @@ struct FitState {
   CellMesh mesh;
   std::vector<Vec3> data;            ///< of each vertex, units of the fit
   std::vector<std::uint8_t> pinned;  ///< of each vertex: kHeldHeight: its height is its cell's
+  std::vector<std::uint8_t> folded;  ///< of each vertex: 1 where it is (folds.h); empty: none; Clough-Tocher only
+  double gradient_price = 0;         ///< what the objective counts for each vertex that is not folded
   std::vector<FitElement> elements;  ///< of each triangle, up to date after refresh()
   std::vector<float> cell_weights;   ///< empty: 1
   FitWeights weights;
@@ -33,14 +35,20 @@ struct FitState {
 
   /// The triangle as it is, or with vertex `moved` at cell coordinates `to`.
   FitTriangle triangle(std::uint32_t t, std::uint32_t moved = kNone, Vec2 to = {}) const;
+  /// What the surface has at the corners, folds included.
   CornerData corner_data(std::uint32_t t) const;
+  bool is_folded(std::uint32_t vertex) const { return !folded.empty() && folded[vertex] != 0; }
   double height(CellMesh::Cell cell) const { return grid.z[grid.cell(greedy::column_of(cell), greedy::row_of(cell))]; }
 
   /// Elements of the triangles that have changed since the last time; all of them where `all`.
   void refresh(const Context& context, bool all = false);
   /// Solves for all vertices from where they are.
   int solve(const CgLimits& limits, const Context& context);
-  /// The objective.
+  /// Where vertices may be folded: a gradient counts what one more number would save, as RMSE falls by about the power
+  /// 3/4 of the numbers. One, not two: which vertices are folded is to be written too, and predictions beside them are
+  /// worse.
+  void set_gradient_price();
+  /// The objective, with the price of the gradients.
   double cost(const Context& context) const;
   std::vector<double> costs(const Context& context) const;
 
@@ -55,13 +63,14 @@ struct FitState {
 struct FitSnapshot {
   CellMesh mesh;
   std::vector<Vec3> data;
-  std::vector<std::uint8_t> pinned;
+  std::vector<std::uint8_t> pinned, folded;
 
-  explicit FitSnapshot(const FitState& s) : mesh(s.mesh), data(s.data), pinned(s.pinned) {}
+  explicit FitSnapshot(const FitState& s) : mesh(s.mesh), data(s.data), pinned(s.pinned), folded(s.folded) {}
   void restore(FitState& s, const Context& context) const {
     s.mesh = mesh;
     s.data = data;
     s.pinned = pinned;
+    s.folded = folded;
     s.refresh(context, true);
   }
 };

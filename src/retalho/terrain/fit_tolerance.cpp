@@ -99,6 +99,7 @@ class Refinement {
       if (insert_in(s_, list, std::min(round, room()), context_) == 0) return;
       s_.refresh(context_);
       s_.solve(kRoughSolve, context_);
+      refold(s_, context_);
     }
   }
 
@@ -115,6 +116,7 @@ class Refinement {
       if (insert_in(s_, list, std::min(count, room()), context_) == 0) return;
       s_.refresh(context_);
       s_.solve(kRoughSolve, context_);
+      refold(s_, context_);
     }
   }
 

@@ -7,6 +7,7 @@
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/fit_state.h"
 #include "retalho/terrain/fit_tolerance.h"
+#include "retalho/terrain/folds.h"
 #include "retalho/tin/cell_delaunay.h"
 
 namespace retalho {
@@ -18,7 +19,8 @@ struct HeldFit::Parts {
   FitState state;
   std::vector<Vec2> points;  // in units of the fit, by the mesh's numbers
 
-  Parts(const Raster& raster, std::span<const greedy::Cell> vertices, const HeldFitOptions& o, const Context& c)
+  Parts(const Raster& raster, std::span<const greedy::Cell> vertices, const HeldFitOptions& o, const Context& c,
+        std::span<const std::uint8_t> folded)
       : options(o),
         context(c),
         triangulation(triangulate_cells(vertices)),
@@ -28,6 +30,9 @@ struct HeldFit::Parts {
       state.weights.slope = options.slope_weight;
       state.weights.fairness = options.fairness;
     }
+    if (!folded.empty())
+      for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v)
+        state.folded.push_back(folded[triangulation.vertex[v]]);
     state.refresh(context, true);
   }
 
@@ -41,8 +46,8 @@ struct HeldFit::Parts {
 };
 
 HeldFit::HeldFit(const Raster& raster, std::span<const greedy::Cell> vertices, const HeldFitOptions& options,
-                 const Context& context)
-    : parts_(std::make_unique<Parts>(raster, vertices, options, context)) {}
+                 const Context& context, std::span<const std::uint8_t> folded)
+    : parts_(std::make_unique<Parts>(raster, vertices, options, context, folded)) {}
 HeldFit::~HeldFit() = default;
 HeldFit::HeldFit(HeldFit&&) noexcept = default;
 HeldFit& HeldFit::operator=(HeldFit&&) noexcept = default;
@@ -54,6 +59,10 @@ double HeldFit::height(std::uint32_t vertex) const {
 Vec2 HeldFit::gradient(std::uint32_t vertex) const {
   const Vec3& u = parts_->state.data[parts_->triangulation.number[vertex]];
   return {u.y, u.z};
+}
+
+bool HeldFit::is_folded(std::uint32_t vertex) const {
+  return parts_->state.is_folded(parts_->triangulation.number[vertex]);
 }
 
 void HeldFit::set(std::uint32_t vertex, double height, Vec2 gradient) {
@@ -71,7 +80,9 @@ HeldFit::StarErrors HeldFit::star_errors(std::uint32_t vertex, double height, Ve
     CornerData corners = s.corner_data(t);
     for (std::size_t k = 0; k < 3; ++k)
       if (s.mesh.triangles()[t][k] == me) corners[k] = {height - s.grid.reference, gradient.x, gradient.y};
-    each_error(s.kind, s.triangle(t), corners, s.grid, s.weights.inside, [&](std::size_t, double error) {
+    const FitTriangle triangle = s.triangle(t);
+    fold_corners(triangle.corner, triangle.folded, corners);
+    each_error(s.kind, triangle, corners, s.grid, s.weights.inside, [&](std::size_t, double error) {
       const double relative = std::abs(error) / tolerance;
       sum.squares += relative * relative;
       if (relative > 1) sum.excess += (relative - 1) * (relative - 1);

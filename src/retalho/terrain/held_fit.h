@@ -28,14 +28,16 @@ struct HeldFitOptions {
 class HeldFit {
  public:
   /// `vertices`: valid or void cells of the grid, ascending, at least three not on one line. Throws BadInput otherwise.
+  /// `folded`: 1 for each vertex that is folded (folded_surface.h), Clough-Tocher only; empty: none.
   HeldFit(const Raster& raster, std::span<const greedy::Cell> vertices, const HeldFitOptions& options,
-          const Context& context = {});
+          const Context& context = {}, std::span<const std::uint8_t> folded = {});
   ~HeldFit();
   HeldFit(HeldFit&&) noexcept;
   HeldFit& operator=(HeldFit&&) noexcept;
 
   double height(std::uint32_t vertex) const;
   Vec2 gradient(std::uint32_t vertex) const;
+  bool is_folded(std::uint32_t vertex) const;
 
   void set(std::uint32_t vertex, double height, Vec2 gradient);
   /// From now on the number is this one.

@@ -7,6 +7,7 @@
 
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/fit_moves.h"
+#include "retalho/terrain/fit_tolerance.h"
 
 namespace retalho {
 namespace {
@@ -24,22 +25,29 @@ struct Trial {
 };
 
 /// `limit`: a trial that is sure to cost more is given up early: part of the star, with the best data for that part
-/// alone, costs no more than all of it.
+/// alone, costs no more than all of it. `as_is`: where and as the vertex is, the elements are known.
 Trial try_star(const FitState& s, std::uint32_t vertex, const std::vector<std::uint32_t>& triangles, Vec2 at,
-               bool as_is, double limit) {
+               bool folded, bool as_is, double limit) {
   const bool flat = s.kind == SurfaceKind::linear;
   const std::size_t per = flat ? 1 : 3;
   Trial trial;
-  trial.cost = 0;
-  Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * (flat ? 1.0 : 0.0);
+  trial.cost = folded ? 0 : s.gradient_price;
+  Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * (flat || folded ? 1.0 : 0.0);
   a(0, 0) = 0;
   Eigen::Vector3d b = Eigen::Vector3d::Zero(), u = b;
   bool sound = false;
   for (const std::uint32_t t : triangles) {
-    trial.elements.push_back(as_is ? s.elements[t] : fit_element(s.kind, s.triangle(t, vertex, at), s.grid, s.weights));
-    const FitElement& e = trial.elements.back();
     const auto& v = s.mesh.triangles()[t];
     const std::size_t me = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
+    if (as_is) {
+      trial.elements.push_back(s.elements[t]);
+    } else {
+      FitTriangle triangle = s.triangle(t, vertex, at);
+      const auto bit = static_cast<std::uint8_t>(1U << me);
+      triangle.folded = static_cast<std::uint8_t>(folded ? triangle.folded | bit : triangle.folded & ~bit);
+      trial.elements.push_back(fit_element(s.kind, triangle, s.grid, s.weights));
+    }
+    const FitElement& e = trial.elements.back();
     CornerData rest = s.corner_data(t);
     rest[me] = {};
     trial.cost += element_cost(s.kind, e, rest);
@@ -71,7 +79,7 @@ Trial try_star(const FitState& s, std::uint32_t vertex, const std::vector<std::u
 }
 
 struct Move {
-  bool wanted = false;
+  bool wanted = false, fold = false;
   Cell to = 0;
   Vec3 data;
   std::vector<FitElement> elements;
@@ -94,6 +102,7 @@ class Sweep {
         moved.push_back(color[k]);
         state_.mesh.displace(color[k], moves[k].to);
         state_.data[color[k]] = moves[k].data;
+        if (!state_.folded.empty()) state_.folded[color[k]] = moves[k].fold ? 1 : 0;
         CellMesh::Star star;
         state_.mesh.star(color[k], star);
         for (std::size_t i = 0; i < star.triangles.size(); ++i)
@@ -131,11 +140,20 @@ class Sweep {
     mesh.star(v, star);
     double area = 0;
     for (const std::uint32_t t : star.triangles) area += area_of(state_.triangle(t));
-    const Trial now = try_star(state_, v, star.triangles, mesh.at(v), true, INFINITY);
+    const bool folded = state_.is_folded(v), either = !state_.folded.empty();
+    const Trial now = try_star(state_, v, star.triangles, mesh.at(v), folded, true, INFINITY);
     double best = now.cost * (1 - 1e-6);
     if (!(best > 0)) return move;
-    const double step = reach_ * std::sqrt(area / 3);
     const Cell here = mesh.cell(v);
+    const auto attempt = [&](Cell to, Vec2 at, bool fold) {
+      Trial trial = try_star(state_, v, star.triangles, at, fold, false, best);
+      if (!(trial.cost < best)) return;
+      best = trial.cost;
+      move = {true, fold, to, trial.data, std::move(trial.elements)};
+    };
+    if (either) attempt(here, mesh.at(v), !folded);
+    if (!(reach_ > 0)) return move;
+    const double step = reach_ * std::sqrt(area / 3);
     std::vector<Cell> tried{here};
     for (int direction = 0; direction < 8; ++direction) {
       const double angle = direction * (std::numbers::pi / 4);
@@ -148,10 +166,8 @@ class Sweep {
       if (std::isnan(state_.height(to)) || !mesh.can_move(v, to)) continue;
       const Vec2 at{static_cast<double>(column), -static_cast<double>(row)};
       if (!sound(v, star.triangles, at)) continue;
-      Trial trial = try_star(state_, v, star.triangles, at, false, best);
-      if (!(trial.cost < best)) continue;
-      best = trial.cost;
-      move = {true, to, trial.data, std::move(trial.elements)};
+      attempt(to, at, folded);
+      if (either) attempt(to, at, !folded);
     }
     return move;
   }
@@ -182,12 +198,19 @@ namespace {
 std::vector<double> star_costs(const FitState& state, const Context& context) {
   const std::vector<double> costs = state.costs(context);
   std::vector<double> result(state.mesh.vertex_count(), 0.0);
+  for (std::uint32_t v = 0; v < result.size(); ++v) result[v] = state.is_folded(v) ? 0 : state.gradient_price;
   for (std::size_t t = 0; t < costs.size(); ++t)
     for (const std::uint32_t v : state.mesh.triangles()[t]) result[v] += costs[t];
   return result;
 }
 
 }  // namespace
+
+void refold(FitState& state, const Context& context) {
+  if (state.folded.empty()) return;
+  state.set_gradient_price();
+  relocate(state, 0, kRoughSolve, context);
+}
 
 bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context) {
   constexpr double kWorse = 1.02;
@@ -209,8 +232,11 @@ bool relocate(FitState& state, double reach, const CgLimits& limits, const Conte
       if (!state.mesh.can_move(v, before.mesh.cell(v))) continue;
       state.mesh.displace(v, before.mesh.cell(v));
       state.data[v] = before.data[v];
+      if (!state.folded.empty()) state.folded[v] = before.folded[v];
     }
-    std::erase_if(moved, [&](std::uint32_t v) { return state.mesh.cell(v) == before.mesh.cell(v); });
+    std::erase_if(moved, [&](std::uint32_t v) {
+      return state.mesh.cell(v) == before.mesh.cell(v) && (state.folded.empty() || state.folded[v] == before.folded[v]);
+    });
   }
   state.mesh.restore();
   state.refresh(context);

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "retalho/core/error.h"
 #include "retalho/terrain/crease_choice.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/fit_moves.h"
 #include "retalho/terrain/fit_tolerance.h"
+#include "retalho/terrain/folded_surface.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
 
@@ -63,6 +65,7 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
     if (insert_at_centroids(state, std::min(round, vertices - n), context) == 0) break;
     state.refresh(context);
     state.solve(kRoughSolve, context);
+    refold(state, context);
     context.report("refine", static_cast<double>(n) / static_cast<double>(vertices));
   }
   context.report("refine", 1);
@@ -95,9 +98,13 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
     relocate(state, reach, kRoughSolve, context);
     reach = std::max(0.15, reach * 0.85);
   };
-  for (int k = 0; k < relocations; ++k) sweep(k);
+  for (int k = 0; k < relocations; ++k) {
+    state.set_gradient_price();
+    sweep(k);
+  }
   for (int k = 0; k < exchanges; ++k) {
     const FitSnapshot before(state);
+    state.set_gradient_price();
     const double cost = state.cost(context);
     exchange(state, share, kRoughSolve, context);
     sweep(relocations + k);  // judged together: new vertices are not yet at their best places
@@ -108,10 +115,10 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
   if (relocations + exchanges > 0) context.report("relocate", 1);
 }
 
-Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
-  check(options);
-  if (options.heights_only) return refine_heights(raster, options, context);
-  FitState state = begin(raster, options, context);
+namespace {
+
+/// As the options ask for, but for creases.
+Terrain refine(FitState& state, const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
   if (options.max_error > 0) {
     const ToleranceOptions tolerance{options.max_error, options.vertices, options.growth, options.relocations,
                                      options.exchanges};
@@ -122,7 +129,35 @@ Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options
   grow(state, options.vertices, options.growth, context);
   better(state, options.relocations, options.exchanges, context);
   state.solve(kFinalSolve, context);
-  Terrain terrain = to_terrain(state, raster, context);
+  return to_terrain(state, raster, context);
+}
+
+}  // namespace
+
+FoldedVertices refine_folded(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
+  check(options);
+  if (options.surface != SurfaceKind::clough_tocher || options.creases || options.heights_only)
+    throw UsageError("vertices of a Clough-Tocher surface can be folded, without other creases", {}, "surface");
+  FitState state = begin(raster, options, context);
+  state.folded.assign(state.mesh.vertex_count(), 0);
+  refine(state, raster, options, context);
+  FoldedVertices result;
+  std::vector<std::uint32_t> order(state.mesh.vertex_count());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return state.mesh.cell(a) < state.mesh.cell(b); });
+  for (const std::uint32_t v : order) {
+    result.cells.push_back(state.mesh.cell(v));
+    result.folded.push_back(state.folded[v]);
+  }
+  return result;
+}
+
+Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context) {
+  check(options);
+  if (options.heights_only) return refine_heights(raster, options, context);
+  FitState state = begin(raster, options, context);
+  Terrain terrain = refine(state, raster, options, context);
   if (!options.creases) return terrain;
   const CreaseChoice chosen = trade_for_creases(state, context);
   if (chosen.edges.empty()) return terrain;
