@@ -5,6 +5,7 @@
 
 #include "retalho/core/in_order.h"
 #include "retalho/core/parallel.h"
+#include "retalho/core/variants.h"
 #include "retalho/level/fixed_levels.h"
 #include "retalho/terrain/bicubic_rows.h"
 
@@ -12,19 +13,34 @@ namespace retalho {
 namespace {
 
 /// The largest sum of the sizes that make an ordinate, of samples [from, to).
+RETALHO_VARIANTS
 double largest_ordinate(const BicubicGrid& grid, std::size_t from, std::size_t to) {
-  double m = 0;
+  const double *z = grid.z.data(), *zu = grid.zu.data(), *zv = grid.zv.data(), *zuv = grid.zuv.data();
+  constexpr std::size_t kLanes = 8;
+  std::array<double, kLanes> m{};
+  for (; to - from >= kLanes; from += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const std::size_t i = from + l;
+      const double size = std::abs(z[i]) + (std::abs(zu[i]) + std::abs(zv[i])) / 3 + std::abs(zuv[i]) / 9;
+      m[l] = m[l] < size ? size : m[l];
+    }
   for (std::size_t i = from; i < to; ++i)
-    m = std::max(m,
-                 std::abs(grid.z[i]) + (std::abs(grid.zu[i]) + std::abs(grid.zv[i])) / 3 + std::abs(grid.zuv[i]) / 9);
-  return m;
+    m[0] = std::max(m[0], std::abs(z[i]) + (std::abs(zu[i]) + std::abs(zv[i])) / 3 + std::abs(zuv[i]) / 9);
+  return *std::max_element(m.begin(), m.end());
+}
+
+/// The whole numbers nearest to values * scale, ties to even; their magnitudes are below 2^31.
+RETALHO_VARIANTS
+void fix_values(const double* values, std::size_t n, double scale, std::int32_t* fixed) {
+  constexpr double kNoFraction = 0x1.8p52;  // a sum with it has no bits left for a fraction
+  for (std::size_t i = 0; i < n; ++i)
+    fixed[i] = static_cast<std::int32_t>((values[i] * scale + kNoFraction) - kNoFraction);
 }
 
 /// Samples [from, to) of `grid` as whole quanta, to places `out` on.
 void fix_samples(const BicubicGrid& grid, std::size_t from, std::size_t to, FixedGrid& f, std::size_t out) {
   const auto fix = [&](const std::vector<double>& values, double scale, std::vector<std::int32_t>& fixed) {
-    for (std::size_t i = from; i < to; ++i)
-      fixed[out + i - from] = static_cast<std::int32_t>(std::nearbyint(values[i] * scale));
+    fix_values(values.data() + from, to - from, scale, fixed.data() + out);
   };
   fix(grid.z, f.per_unit, f.z);
   fix(grid.zu, f.per_unit / 3, f.u);

@@ -7,6 +7,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
+#include "retalho/core/variants.h"
 #include "retalho/terrain/bicubic_rows.h"
 #include "retalho/terrain/spline_tangents.h"
 
@@ -41,8 +42,30 @@ double adini_twist(const BicubicGrid& g, int column, int row) {
   return cells == 0 ? 0 : sum / cells;
 }
 
+/// flatten_tangents of one row without voids, whose neighbours are `above` and `below`; at the grid's border both are
+/// the one that there is.
+RETALHO_VARIANTS
+void flatten_row(const double* above, const double* z, const double* below, std::size_t n, double* zu, double* zv,
+                 double* zuv) {
+  const auto flatten = [&](std::size_t c, bool flat_u) {
+    const bool flat_v = z[c] == above[c] || z[c] == below[c];
+    zu[c] = flat_u ? 0 : zu[c];
+    zv[c] = flat_v ? 0 : zv[c];
+    zuv[c] = flat_u || flat_v ? 0 : zuv[c];
+  };
+  flatten(0, z[0] == z[1]);
+  for (std::size_t c = 1; c + 1 < n; ++c) flatten(c, z[c] == z[c - 1] || z[c] == z[c + 1]);
+  flatten(n - 1, z[n - 1] == z[n - 2]);
+}
+
 void flatten_tangents(BicubicGrid& g, RowRange rows, const Context& context) {
   for_rows(rows, context, [&](int r) {
+    if (g.valid.empty() && g.columns >= 2 && g.rows >= 2) {
+      const std::size_t here = cell_of(g, 0, r), above = cell_of(g, 0, r > 0 ? r - 1 : r + 1),
+                        below = cell_of(g, 0, r + 1 < g.rows ? r + 1 : r - 1);
+      return flatten_row(&g.z[above], &g.z[here], &g.z[below], static_cast<std::size_t>(g.columns), &g.zu[here],
+                         &g.zv[here], &g.zuv[here]);
+    }
     for (int c = 0; c < g.columns; ++c) {
       const std::size_t here = cell_of(g, c, r);
       if (!g.has_sample(c, r)) continue;

@@ -5,14 +5,10 @@
 #include <cmath>
 
 #include "retalho/core/parallel.h"
+#include "retalho/terrain/tangent_kernels.h"
 
 namespace retalho {
 namespace {
-
-// m(k-1) + 4 m(k) + m(k+1) = 3 (z(k+1) - z(k-1)) on an endless row has the solution
-// m(i) = c sum_k p^(k-1) (z(i+k) - z(i-k)), p = sqrt(3) - 2.
-const double kDecay = std::sqrt(3.0) - 2;
-const double kWeight = std::sqrt(3.0) / 2 * (1 - kDecay * kDecay);
 
 /// The tangent at sample `at` of a run of `n` samples, near one of its ends (or both): the tridiagonal system of the
 /// samples that are within kSplineHalo. Beyond a cut that is no end of the run the tangent counts as zero.
@@ -26,25 +22,17 @@ double window_tangent(const double* z, std::ptrdiff_t stride, int n, int at, Tan
   }
   const int first = std::max(0, at - kSplineHalo), last = std::min(n - 1, at + kSplineHalo);
   // Forward elimination: m(k) = rest[k] - upper[k] m(k+1).
-  std::array<double, 2 * kSplineHalo + 1> upper{}, rest{};
+  std::array<double, 2 * kSplineHalo + 1> rest{};
   const int size = last - first + 1;
   // A run that ends exactly kSplineHalo away counts as cut there: what lies behind is not looked at.
   const bool starts = at - first < kSplineHalo, stops = last - at < kSplineHalo;
-  if (starts) {
-    if (ends == TangentEnds::not_a_knot) {
-      upper[0] = 2;
-      rest[0] = (-5 * value(0) + 4 * value(1) + value(2)) / 2;
-    } else {
-      upper[0] = 0.5;
-      rest[0] = 1.5 * (value(1) - value(0));
-    }
-  }
+  const auto& upper = starts ? pivots(ends) : cut_pivots();
+  if (starts)
+    rest[0] =
+        ends == TangentEnds::not_a_knot ? (-5 * value(0) + 4 * value(1) + value(2)) / 2 : 1.5 * (value(1) - value(0));
   const auto place = [](int k) { return static_cast<std::size_t>(k); };
-  for (int k = 1; k + 1 < size; ++k) {
-    const double pivot = 1 / (4 - upper[place(k - 1)]);
-    upper[place(k)] = pivot;
-    rest[place(k)] = (3 * (value(first + k + 1) - value(first + k - 1)) - rest[place(k - 1)]) * pivot;
-  }
+  for (int k = 1; k + 1 < size; ++k)
+    rest[place(k)] = (3 * (value(first + k + 1) - value(first + k - 1)) - rest[place(k - 1)]) * upper[place(k)];
   double m = 0;
   if (stops) {
     const double before = rest[place(size - 2)], slope = upper[place(size - 2)];
@@ -75,32 +63,60 @@ void for_each_run(int n, const Valid& valid, const Run& run) {
   }
 }
 
+/// Lines side by side without voids, kLongRun samples long at least: sample k of line l at z[stride * k + across * l],
+/// its tangent likewise in m. Sets the tangents of [first, last) that are within kSplineHalo of the lines' ends.
+void set_ends(const double* z, std::ptrdiff_t stride, std::ptrdiff_t across, std::size_t lines, int n, RowRange wanted,
+              TangentEnds ends, double* m) {
+  EndSamples samples;
+  EndTangents tangents;
+  const auto work = [&](int from, int to, std::ptrdiff_t samples_from, std::ptrdiff_t tangents_from, auto&& solve) {
+    if (from >= to) return;
+    for (std::size_t l = 0; l < lines; l += kEndLanes) {
+      const std::size_t count = std::min(kEndLanes, lines - l);
+      const auto beside = across * static_cast<std::ptrdiff_t>(l);
+      for (std::size_t k = 0; k < samples.size(); ++k)
+        for (std::size_t i = 0; i < kEndLanes; ++i)  // behind the last line: the last one again
+          samples[k][i] = z[stride * (samples_from + static_cast<std::ptrdiff_t>(k)) + beside +
+                            across * static_cast<std::ptrdiff_t>(std::min(i, count - 1))];
+      solve(samples, ends, tangents);
+      for (std::ptrdiff_t k = from; k < to; ++k)
+        for (std::size_t i = 0; i < count; ++i)
+          m[stride * k + beside + across * static_cast<std::ptrdiff_t>(i)] =
+              tangents[static_cast<std::size_t>(k - tangents_from)][i];
+    }
+  };
+  work(wanted.first, std::min(kSplineHalo, wanted.last), 0, 0, first_tangents);
+  work(std::max(n - kSplineHalo, wanted.first), wanted.last, n - kLongRun, n - kSplineHalo, last_tangents);
+}
+
 }  // namespace
 
 void tangents_along_rows(std::span<const double> values, GridShape shape, const Mask& valid, TangentEnds ends,
                          RowRange rows, std::span<double> out, const Context& context) {
   const int columns = shape.columns;
   const auto count = static_cast<std::size_t>(rows.last - rows.first);
+  const auto inner = [](const double* z, double* m, int n) {
+    if (n > 2 * kSplineHalo)
+      inner_tangents(z + kSplineHalo, 1, static_cast<std::size_t>(n - 2 * kSplineHalo), m + kSplineHalo);
+  };
   parallel_chunks(count, 16, context, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      const std::size_t r = i + static_cast<std::size_t>(rows.first);
-      const double* z = values.data() + r * static_cast<std::size_t>(columns);
-      double* m = out.data() + r * static_cast<std::size_t>(columns);
+    const std::size_t start = (from + static_cast<std::size_t>(rows.first)) * static_cast<std::size_t>(columns);
+    const double* z = values.data() + start;
+    double* m = out.data() + start;
+    if (valid.empty() && columns >= kLongRun) {
+      set_ends(z, 1, columns, to - from, columns, {0, columns}, ends, m);
+      for (std::size_t i = from; i < to; ++i, z += columns, m += columns) inner(z, m, columns);
+      return;
+    }
+    for (std::size_t i = from; i < to; ++i, z += columns, m += columns) {
       std::fill(m, m + columns, 0.0);
-      const auto is_valid = [&](int c) { return valid.empty() || valid.get(c, static_cast<int>(r)); };
+      const auto is_valid = [&](int c) { return valid.empty() || valid.get(c, static_cast<int>(i) + rows.first); };
       for_each_run(columns, is_valid, [&](int begin, int end) {
         const int n = end - begin;
+        inner(z + begin, m + begin, n);
         const int inner_begin = std::min(n, kSplineHalo), inner_end = std::max(inner_begin, n - kSplineHalo);
         for (int k = 0; k < inner_begin; ++k) m[begin + k] = window_tangent(z + begin, 1, n, k, ends);
         for (int k = inner_end; k < n; ++k) m[begin + k] = window_tangent(z + begin, 1, n, k, ends);
-        for (int block = inner_begin; block < inner_end; block += 512) {
-          const int size = std::min(512, inner_end - block);
-          const double* centre = z + begin + block;
-          double* sum = m + begin + block;
-          for (int k = kSplineHalo; k >= 1; --k)
-            for (int x = 0; x < size; ++x) sum[x] = sum[x] * kDecay + (centre[x + k] - centre[x - k]);
-          for (int x = 0; x < size; ++x) sum[x] *= kWeight;
-        }
       });
     }
   });
@@ -127,17 +143,13 @@ void tangents_along_columns(std::span<const double> values, GridShape shape, con
           const double* source = z + stride * (top - kSplineHalo + r);
           std::copy(source, source + width, copy.data() + r * kBlock);
         }
-        for (int r = 0; r < count; ++r) {
-          std::array<double, kBlock> sum{};
-          const double* centre = copy.data() + (r + kSplineHalo) * kBlock;
-          for (int k = kSplineHalo; k >= 1; --k) {
-            const double* below = centre + k * kBlock;
-            const double* above = centre - k * kBlock;
-            for (std::size_t x = 0; x < kBlock; ++x) sum[x] = sum[x] * kDecay + (below[x] - above[x]);
-          }
-          double* row = m + stride * (top + r);
-          for (int x = 0; x < width; ++x) row[x] = sum[static_cast<std::size_t>(x)] * kWeight;
-        }
+        for (int r = 0; r < count; ++r)
+          inner_tangents(copy.data() + (r + kSplineHalo) * kBlock, kBlock, static_cast<std::size_t>(width),
+                         m + stride * (top + r));
+      }
+      if (valid.empty() && rows >= kLongRun) {
+        set_ends(z, stride, 1, static_cast<std::size_t>(width), rows, wanted, ends, m);
+        continue;
       }
       for (int x = 0; x < width; ++x) {
         const auto is_valid = [&](int r) { return valid.empty() || valid.get(left + x, r); };
