@@ -11,7 +11,8 @@ namespace retalho {
 namespace {
 
 /// The roots on a row of edges: those of edge c stand at [start[c], start[c + 1]).
-struct EdgeRow {
+class EdgeRow {
+ public:
   std::vector<std::uint32_t> start;
   std::vector<EdgeRoot> roots;
 
@@ -19,6 +20,19 @@ struct EdgeRow {
     const auto c = static_cast<std::size_t>(edge);
     return std::span(roots).subspan(start[c], start[c + 1] - start[c]);
   }
+  /// Without roots, for `edges` edges; begin() is called for those that may have some, ascending, then finish().
+  void restart(std::size_t edges) {
+    roots.clear();
+    start.resize(edges + 1);
+    known_ = 0;
+  }
+  void begin(std::size_t edge) {
+    while (known_ <= edge) start[known_++] = static_cast<std::uint32_t>(roots.size());
+  }
+  void finish() { begin(start.size() - 1); }
+
+ private:
+  std::size_t known_ = 0;
 };
 
 class StripTracer {
@@ -33,14 +47,16 @@ class StripTracer {
         boxes_(levels, tolerance, true, strip.trace),
         low_(static_cast<std::size_t>(grid.columns)),
         high_(low_.size()),
-        candidates_(low_.size()),
+        places_(low_.size()),
         marked_(low_.size()) {}
 
   void run(int first, int last) {
+    select_patches(first);
     trace_row(first, above_);
     strip_.top = static_cast<std::uint32_t>(above_.roots.size());
     strip_.top_undecided = strip_.trace.undecided_edges;
     for (int row = first; row < last; ++row) {
+      if (row > first) select_patches(row);
       strip_.bottom = static_cast<std::uint32_t>(strip_.trace.points.size());
       trace_row(row + 1, below_);
       trace_columns(row);
@@ -51,23 +67,13 @@ class StripTracer {
   }
 
  private:
-  /// Sets low_ and high_ to the range of the edges' ordinates, node and tangent at both ends.
-  void bound_edges(const std::int32_t* z, const std::int32_t* d, std::size_t step, std::size_t n) {
-    bound_edge_row(z, d, step, n, low_.data(), high_.data());
-  }
-  void bound_patches(int row) {
+  /// The patches of a row whose range may hold a level, into candidates_, whether they exist or not. An edge's
+  /// ordinates are its patches' too: no other edges have roots.
+  void select_patches(int row) {
     const std::size_t n = static_cast<std::size_t>(grid_.columns) - 1, o = grid_.node(0, row);
     bound_patch_row(&grid_.z[o], &grid_.u[o], &grid_.v[o], &grid_.t[o], n + 1, n, low_.data(), high_.data());
-  }
-  /// The places whose range may hold a level, into candidates_; how many.
-  std::size_t select(std::size_t n) {
-    mark_ranges(low_.data(), high_.data(), n, levels_, marked_.data());
-    std::size_t found = 0;
-    for (std::size_t c = 0; c < n; ++c) {
-      candidates_[found] = static_cast<std::uint32_t>(c);
-      found += marked_[c];
-    }
-    return found;
+    const std::size_t found = select_ranges(low_.data(), high_.data(), n, levels_, marked_.data(), places_.data());
+    candidates_ = std::span(places_).first(found);
   }
 
   void isolate(std::int32_t z0, std::int32_t d0, std::int32_t d1, std::int32_t z1, Vec2 from, Vec2 to,
@@ -86,17 +92,13 @@ class StripTracer {
           });
   }
 
+  /// The roots on the edges of a row, beside the patches last selected.
   void trace_row(int row, EdgeRow& edges) {
     const std::size_t n = static_cast<std::size_t>(grid_.columns) - 1, o = grid_.node(0, row);
-    edges.roots.clear();
-    edges.start.assign(n + 1, 0);
-    bound_edges(&grid_.z[o], &grid_.u[o], 1, n);
-    const std::size_t found = select(n);
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < found; ++i) {
+    edges.restart(n);
+    for (const std::uint32_t c : candidates_) {
       context_.check();  // a patch may hold thousands of lines
-      const std::size_t c = candidates_[i];
-      while (done <= c) edges.start[done++] = static_cast<std::uint32_t>(edges.roots.size());
+      edges.begin(c);
       const int column = static_cast<int>(c);
       const bool above = grid_.has_patch(column, row - 1), below = grid_.has_patch(column, row);
       if (!above && !below) continue;
@@ -106,39 +108,37 @@ class StripTracer {
       if (keep_border_ && above != below && edges.roots.size() > before)
         keep_edge(column, row, true, std::span(edges.roots).subspan(before));
     }
-    while (done <= n) edges.start[done++] = static_cast<std::uint32_t>(edges.roots.size());
+    edges.finish();
   }
 
   void trace_columns(int row) {
     const auto n = static_cast<std::size_t>(grid_.columns);
     const std::size_t o = grid_.node(0, row);
-    beside_.roots.clear();
-    beside_.start.assign(n + 1, 0);
-    bound_edges(&grid_.z[o], &grid_.v[o], n, n);
-    const std::size_t found = select(n);
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < found; ++i) {
-      context_.check();  // a patch may hold thousands of lines
-      const std::size_t c = candidates_[i];
-      while (done <= c) beside_.start[done++] = static_cast<std::uint32_t>(beside_.roots.size());
+    beside_.restart(n);
+    const auto trace = [&](std::size_t c) {
+      beside_.begin(c);
       const int column = static_cast<int>(c);
       const bool left = grid_.has_patch(column - 1, row), right = grid_.has_patch(column, row);
-      if (!left && !right) continue;
+      if (!left && !right) return;
       const std::size_t before = beside_.roots.size();
       isolate(grid_.z[o + c], grid_.v[o + c], grid_.v[o + c + n], grid_.z[o + c + n], place(column, row),
               place(column, row + 1), beside_.roots);
       if (keep_border_ && left != right && beside_.roots.size() > before)
         keep_edge(column, row, false, std::span(beside_.roots).subspan(before));
+    };
+    std::size_t next = 0;  // both sides of each patch, once
+    for (const std::uint32_t c : candidates_) {
+      context_.check();
+      if (c >= next) trace(c);
+      trace(next = c + 1);
+      ++next;
     }
-    while (done <= n) beside_.start[done++] = static_cast<std::uint32_t>(beside_.roots.size());
+    beside_.finish();
   }
 
   void trace_patches(int row) {
-    bound_patches(row);
-    const std::size_t found = select(static_cast<std::size_t>(grid_.columns) - 1);
-    for (std::size_t i = 0; i < found; ++i) {
-      context_.check();  // a patch may hold thousands of lines
-      const std::size_t c = candidates_[i];
+    for (const std::uint32_t c : candidates_) {
+      context_.check();
       const int column = static_cast<int>(c);
       if (!grid_.has_patch(column, row)) continue;
       if (levels_.at_most(2.0 * low_[c]) >= levels_.at_most(2.0 * high_[c])) continue;
@@ -163,7 +163,8 @@ class StripTracer {
   BoxTracer<RectanglePatch> boxes_;
   EdgeRow above_, below_, beside_;
   std::vector<std::int32_t> low_, high_;
-  std::vector<std::uint32_t> candidates_;
+  std::vector<std::uint32_t> places_;
+  std::span<const std::uint32_t> candidates_;  ///< of places_
   std::vector<std::uint8_t> marked_;
 };
 

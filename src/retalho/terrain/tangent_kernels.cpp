@@ -23,7 +23,8 @@ Pivots make_pivots(double first) {
 constexpr std::size_t kHalo = static_cast<std::size_t>(kSplineHalo), kRun = static_cast<std::size_t>(kLongRun);
 
 /// Doubles side by side, wherever they stand.
-using Lanes = double __attribute__((vector_size(8 * kEndLanes), aligned(8), may_alias));
+constexpr std::size_t kLanes = 4;
+using Lanes = double __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
 static_assert(sizeof(Lanes) == sizeof(EndSamples::value_type));
 
 }  // namespace
@@ -42,22 +43,16 @@ RETALHO_VARIANTS
 void inner_tangents(const double* centre, std::ptrdiff_t stride, std::size_t n, double* out) {
   const double decay = kDecay, weight = kWeight;
   std::size_t x = 0;
-  // Four sums at once: each waits for itself only.
-  for (; x + 4 * kEndLanes <= n; x += 4 * kEndLanes) {
-    Lanes a{}, b{}, c{}, d{};
+  constexpr std::size_t kSums = 8;  // at once: each waits for itself only
+  for (; x + kSums * kLanes <= n; x += kSums * kLanes) {
+    Lanes sum[kSums] = {};
     for (int k = kSplineHalo; k >= 1; --k) {
       const auto* after = reinterpret_cast<const Lanes*>(centre + x + k * stride);
       const auto* before = reinterpret_cast<const Lanes*>(centre + x - k * stride);
-      a = a * decay + (after[0] - before[0]);
-      b = b * decay + (after[1] - before[1]);
-      c = c * decay + (after[2] - before[2]);
-      d = d * decay + (after[3] - before[3]);
+      for (std::size_t i = 0; i < kSums; ++i) sum[i] = sum[i] * decay + (after[i] - before[i]);
     }
     auto* to = reinterpret_cast<Lanes*>(out + x);
-    to[0] = a * weight;
-    to[1] = b * weight;
-    to[2] = c * weight;
-    to[3] = d * weight;
+    for (std::size_t i = 0; i < kSums; ++i) to[i] = sum[i] * weight;
   }
   for (; x < n; ++x) {
     double sum = 0;

@@ -12,7 +12,7 @@ namespace retalho {
 /// How far into a line its ends reach: a run of so many samples or more has no place that sees both.
 inline constexpr int kLongRun = 2 * kSplineHalo;
 /// Lines that the ends are worked out for at once.
-inline constexpr std::size_t kEndLanes = 8;
+inline constexpr std::size_t kEndLanes = 4;
 
 /// The tridiagonal system of a line is eliminated downwards: m(k) = rest(k) - upper(k) m(k+1). The `upper` of its
 /// equations, which the samples have no part in; of a line that starts with a sample's own equation.
