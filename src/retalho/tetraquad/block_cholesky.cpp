@@ -1,5 +1,7 @@
 // BlockCholesky by our own multifrontal method. With SuiteSparse, block_cholesky_cholmod.cpp stands in its place.
 #include <algorithm>
+#include <array>
+#include <memory>
 #include <utility>
 
 #include "retalho/core/error.h"
@@ -37,6 +39,37 @@ void extend_add(double* front, std::size_t n, const double* share, const std::ve
     }
 }
 
+/// Sum of a[i] b[i], in eight partial sums: one after the other each would wait for the last.
+double dot(const double* a, const double* b, std::size_t n) {
+  constexpr std::size_t lanes = 8;
+  std::array<double, lanes> sums = {};
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes)
+    for (std::size_t k = 0; k < lanes; ++k) sums[k] += a[i + k] * b[i + k];
+  for (; i < n; ++i) sums[i % lanes] += a[i] * b[i];
+  return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
+}
+
+/// The largest front, and the most that children's shares take at any time.
+struct Room {
+  std::size_t front = 0, shares = 0;
+};
+
+Room room_of(const std::vector<Supernode>& nodes) {
+  Room room;
+  std::vector<std::size_t> start(nodes.size(), 0);
+  std::size_t top = 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::size_t rest = kBlock * nodes[k].border.size(), n = kBlock * nodes[k].pivots.size() + rest;
+    if (!nodes[k].children.empty()) top = start[static_cast<std::size_t>(nodes[k].children.front())];
+    start[k] = top;
+    top += rest * (rest + 1) / 2;
+    room.front = std::max(room.front, n * n);
+    room.shares = std::max(room.shares, top);
+  }
+  return room;
+}
+
 }  // namespace
 
 BlockCholesky::BlockCholesky(const BlockMatrix& matrix, const Context& context) : parts_(std::make_unique<Parts>()) {
@@ -51,8 +84,11 @@ BlockCholesky::BlockCholesky(const BlockMatrix& matrix, const Context& context) 
   constexpr std::size_t absent = ~std::size_t{0};
   std::vector<std::size_t> local(matrix.rows(), absent), at;
   // What children leave for their parents is a stack, since they come right before them.
-  std::vector<double> shares, front;
   std::vector<std::size_t> share_start(nodes.size(), 0);
+  const Room room = room_of(nodes);
+  // Not filled: what is read of them is written first.
+  const auto shares = std::make_unique_for_overwrite<double[]>(room.shares);
+  const auto front = std::make_unique_for_overwrite<double[]>(room.front);
   std::size_t top = 0;
   parts_->columns.resize(nodes.size());
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -62,37 +98,33 @@ BlockCholesky::BlockCholesky(const BlockMatrix& matrix, const Context& context) 
     for (const std::uint32_t v : node.pivots) local[v] = count++;
     for (const std::uint32_t v : node.border) local[v] = count++;
     const std::size_t n = kBlock * count, pivots = kBlock * node.pivots.size();
-    if (front.size() < n * n) front.resize(n * n);
-    for (std::size_t c = 0; c < n; ++c) std::fill_n(front.data() + c * n + c, n - c, 0.0);
+    for (std::size_t c = 0; c < n; ++c) std::fill_n(front.get() + c * n + c, n - c, 0.0);
     for (std::size_t c = 0; c < node.pivots.size(); ++c) {
       const std::uint32_t v = node.pivots[c];
       const auto row = matrix.columns(v);
       for (std::size_t b = 0; b < row.size(); ++b)
         if (local[row[b]] != absent && local[row[b]] >= c)
-          place_block(front.data(), n, local[row[b]], c, matrix.block(v, b), true);
+          place_block(front.get(), n, local[row[b]], c, matrix.block(v, b), true);
       for (const auto& [w, value] : mirrored[v])
-        if (local[w] != absent && local[w] > c) place_block(front.data(), n, local[w], c, value, false);
+        if (local[w] != absent && local[w] > c) place_block(front.get(), n, local[w], c, value, false);
     }
     for (const std::int32_t child : node.children) {
       at.clear();
       for (const std::uint32_t v : nodes[static_cast<std::size_t>(child)].border) at.push_back(local[v]);
-      extend_add(front.data(), n, shares.data() + share_start[static_cast<std::size_t>(child)], at);
+      extend_add(front.get(), n, shares.get() + share_start[static_cast<std::size_t>(child)], at);
     }
     if (!node.children.empty()) top = share_start[static_cast<std::size_t>(node.children.front())];
-    if (!factor_front(front.data(), n, pivots))
+    if (!factor_front(front.get(), n, pivots))
       throw Error(Error::Kind::internal,
                   "the fit's matrix is not positive definite: raise the smoothness or the ridge");
     std::vector<double>& columns = parts_->columns[k];
     columns.reserve(pivots * n - pivots * (pivots - 1) / 2);
     for (std::size_t c = 0; c < pivots; ++c)
-      columns.insert(columns.end(), front.begin() + static_cast<std::ptrdiff_t>(c * n + c),
-                     front.begin() + static_cast<std::ptrdiff_t>((c + 1) * n));
+      columns.insert(columns.end(), front.get() + c * n + c, front.get() + (c + 1) * n);
     parts_->numbers += columns.size();
     share_start[k] = top;
-    const std::size_t rest = n - pivots;
-    if (shares.size() < top + rest * (rest + 1) / 2) shares.resize(top + rest * (rest + 1) / 2);
     for (std::size_t c = pivots; c < n; ++c) {
-      std::copy_n(front.data() + c * n + c, n - c, shares.data() + top);
+      std::copy_n(front.get() + c * n + c, n - c, shares.get() + top);
       top += n - c;
     }
     for (const std::uint32_t v : node.pivots) local[v] = absent;
@@ -141,9 +173,7 @@ void BlockCholesky::solve(std::span<double> x) const {
     const double* column = parts_->columns[k].data() + parts_->columns[k].size();
     for (std::size_t c = pivots; c-- > 0;) {
       column -= n - c;
-      double value = part[c];
-      for (std::size_t r = 1; r < n - c; ++r) value -= column[r] * part[c + r];
-      part[c] = value / column[0];
+      part[c] = (part[c] - dot(column + 1, part.data() + c + 1, n - c - 1)) / column[0];
     }
     scatter(parts_->nodes[k]);
   }

@@ -41,7 +41,7 @@ bool factor_corner(double* a, std::size_t n, std::size_t w, double* inverse) {
 DenseKernel dense_kernel() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) return dense_product_avx512;
-  if (__builtin_cpu_supports("avx2")) return dense_product_avx2;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return dense_product_avx2;
 #endif
   return dense_product_generic;
 }

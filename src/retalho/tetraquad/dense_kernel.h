@@ -1,5 +1,5 @@
 // Products of small dense matrices, compiled for several widths of vector registers; all give the same bytes, since
-// every number is the same sum in the same order. Internal to the room.
+// every number is the same sum of fused products in the same order. Internal to the room.
 #pragma once
 
 #include <cstddef>
