@@ -103,6 +103,7 @@ const std::vector<Library>& libraries() {
       {"FreeType", std::regex("^ft2build\\.h$|^freetype/.*"), {"render"}},
       {"Cairo", std::regex("^cairo[a-z-]*\\.h$"), {"render", "level"}},
       {"muParserX", std::regex("^muparserx/.*"), {"curve"}},
+      {"the compiler's intrinsics", std::regex("^immintrin\\.h$"), {"tetraquad"}},
   };
   return table;
 }
