@@ -56,7 +56,9 @@ class Loop {
     double squares = 0;
     for (const double e : fit_.errors())
       if (!std::isnan(e)) squares += (e / tolerance_) * (e / tolerance_);
-    ThriftySource thrifty(fit_, tolerance_, kThrift * squares / (8.0 * static_cast<double>(first.bytes.size())));
+    const double a_bit = squares / (8.0 * static_cast<double>(first.bytes.size()));
+    fold_where_it_does_no_harm(a_bit);
+    ThriftySource thrifty(fit_, tolerance_, kThrift * a_bit);
     return encode_compact(facts_, cells_, thrifty, context_, folded_);
   }
 
@@ -77,6 +79,30 @@ class Loop {
       bool moved = false;
       for (const std::uint32_t v : list) moved |= improve(v);
       if (!moved) return;
+    }
+  }
+
+  /// Vertices that may do without a gradient: no cell passes the tolerance, and the squared errors grow by no more than
+  /// the gradient's bits are worth.
+  void fold_where_it_does_no_harm(double a_bit) {
+    if (folded_.empty()) return;
+    constexpr double kGradientBits = 20;  // in the terms of kThrift; it has about nine
+    for (std::uint32_t v = 0; v < cells_.size(); ++v) {
+      if (folded_[v] != 0) continue;
+      const double height = fit_.height(v), step = steps_.height[v];
+      double least = fit_.star_errors(v, height, fit_.gradient(v), tolerance_).squares + kGradientBits * a_bit;
+      double to = NAN;
+      const int far = std::binary_search(pinned_.begin(), pinned_.end(), cells_[v]) ? 0 : 1;
+      for (int k = -far; k <= far; ++k) {
+        const double z = k == 0 ? height : on_lattice(height + k * step, step);
+        const HeldFit::StarErrors then = fit_.star_errors_folded(v, z, tolerance_);
+        if (then.excess > 0 || then.squares >= least) continue;
+        least = then.squares;
+        to = z;
+      }
+      if (std::isnan(to)) continue;
+      fit_.fold(v, to);
+      folded_[v] = 1;
     }
   }
 

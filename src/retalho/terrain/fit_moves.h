@@ -22,7 +22,7 @@ std::size_t insert_at_centroids(FitState& state, std::size_t count, const Contex
 /// cease to be. True if it helped.
 bool relocate(FitState& state, double reach, const CgLimits& limits, const Context& context);
 
-/// Where vertices may be folded: those become so or cease to be for which that pays, at the price as it is now.
+/// Where vertices may be folded: those become so or cease to be for which that pays, at the price that a gradient has.
 void refold(FitState& state, const Context& context);
 
 /// Removes up to `count` vertices off the outline whose stars cost least, no two of them neighbours.

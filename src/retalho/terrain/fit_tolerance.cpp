@@ -99,11 +99,13 @@ class Refinement {
       if (insert_in(s_, list, std::min(round, room()), context_) == 0) return;
       s_.refresh(context_);
       s_.solve(kRoughSolve, context_);
+      s_.set_gradient_price();
       refold(s_, context_);
     }
   }
 
   void reweight_and_insert() {
+    s_.gradient_price = 0;  // from here a fold that misses more is paid for in vertices
     for (int round = 0; round < kPatience; ++round) {
       for (int k = 0; k < kReweightings; ++k) {
         if (!reweigh(s_, goal_, context_)) return;

@@ -36,6 +36,8 @@ struct HeldFit::Parts {
     state.refresh(context, true);
   }
 
+  StarErrors star_errors(std::uint32_t vertex, double height, Vec2 gradient, bool folded, double tolerance) const;
+
   void solve(const CgLimits& limits) {
     FitSolveOptions how;
     how.limits = limits;
@@ -71,8 +73,22 @@ void HeldFit::set(std::uint32_t vertex, double height, Vec2 gradient) {
 }
 
 HeldFit::StarErrors HeldFit::star_errors(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const {
-  const FitState& s = parts_->state;
-  const std::uint32_t me = parts_->triangulation.number[vertex];
+  return parts_->star_errors(vertex, height, gradient, is_folded(vertex), tolerance);
+}
+
+HeldFit::StarErrors HeldFit::star_errors_folded(std::uint32_t vertex, double height, double tolerance) const {
+  return parts_->star_errors(vertex, height, {}, true, tolerance);
+}
+
+void HeldFit::fold(std::uint32_t vertex, double height) {
+  set(vertex, height, {});
+  parts_->state.folded[parts_->triangulation.number[vertex]] = 1;
+}
+
+HeldFit::StarErrors HeldFit::Parts::star_errors(std::uint32_t vertex, double height, Vec2 gradient, bool folded,
+                                                double tolerance) const {
+  const FitState& s = state;
+  const std::uint32_t me = triangulation.number[vertex];
   CellMesh::Star star;
   s.mesh.star(me, star);
   StarErrors sum;
@@ -80,7 +96,9 @@ HeldFit::StarErrors HeldFit::star_errors(std::uint32_t vertex, double height, Ve
     CornerData corners = s.corner_data(t);
     for (std::size_t k = 0; k < 3; ++k)
       if (s.mesh.triangles()[t][k] == me) corners[k] = {height - s.grid.reference, gradient.x, gradient.y};
-    const FitTriangle triangle = s.triangle(t);
+    FitTriangle triangle = s.triangle(t);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (folded && triangle.vertex[k] == me) triangle.folded |= static_cast<std::uint8_t>(1U << k);
     fold_corners(triangle.corner, triangle.folded, corners);
     each_error(s.kind, triangle, corners, s.grid, s.weights.inside, [&](std::size_t, double error) {
       const double relative = std::abs(error) / tolerance;

@@ -65,6 +65,10 @@ class HeldFit {
   };
   /// If the vertex had these numbers. Not for heights_only.
   StarErrors star_errors(std::uint32_t vertex, double height, Vec2 gradient, double tolerance) const;
+  /// If the vertex were folded, with this height. Clough-Tocher with `folded` only.
+  StarErrors star_errors_folded(std::uint32_t vertex, double height, double tolerance) const;
+  /// Folds it. solve() must not be called any more.
+  void fold(std::uint32_t vertex, double height);
   /// Vertices of the triangles with an error over `tolerance`, ascending.
   std::vector<std::uint32_t> vertices_over(double tolerance) const;
   /// Neighbours of a vertex.

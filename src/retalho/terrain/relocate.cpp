@@ -208,7 +208,6 @@ std::vector<double> star_costs(const FitState& state, const Context& context) {
 
 void refold(FitState& state, const Context& context) {
   if (state.folded.empty()) return;
-  state.set_gradient_price();
   relocate(state, 0, kRoughSolve, context);
 }
 

@@ -65,6 +65,7 @@ void grow(FitState& state, std::size_t vertices, double growth, const Context& c
     if (insert_at_centroids(state, std::min(round, vertices - n), context) == 0) break;
     state.refresh(context);
     state.solve(kRoughSolve, context);
+    state.set_gradient_price();
     refold(state, context);
     context.report("refine", static_cast<double>(n) / static_cast<double>(vertices));
   }
