@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <random>
 
 #include "curve/support.h"
 #include "retalho/curve/bspline.h"
 #include "retalho/curve/convert.h"
 #include "retalho/curve/edit.h"
+#include "support/support.h"
 
 namespace retalho {
 namespace {
@@ -205,6 +208,66 @@ TEST(BSplines, AFullCircleIsExact) {
       {1, w, 1, w, 1, w, 1, w, 1}};
   const Curve curve = to_curve(circle);
   for (int k = 0; k <= 400; ++k) EXPECT_NEAR(norm(evaluate(curve, k / 100.0)), 1, 1e-15);
+}
+
+/// A spline with knots that may be repeated, clamped or not, rational or not.
+BSpline random_spline(test::Random& random) {
+  BSpline s;
+  s.degree = static_cast<int>(1 + random.index(5));
+  s.dimension = 3;
+  const std::size_t p = static_cast<std::size_t>(s.degree), n = p + 1 + random.index(9);
+  const bool clamped = random.chance(0.5), rational = random.chance(0.5);
+  for (std::size_t i = 0; i < n; ++i) {
+    s.points.push_back(test::random_point(random.engine()));
+    if (rational) s.weights.push_back(random.uniform(0.2, 2));
+  }
+  double u = 0;
+  std::size_t same = 0;
+  while (s.knots.size() < n + p + 1) {
+    const std::size_t k = s.knots.size();
+    const bool again = k > 0 && (clamped && (k <= p || k > n) ? true : k != n && same < p && random.chance(0.3));
+    if (!again) u += random.uniform(0.1, 1);
+    same = again ? same + 1 : 1;
+    s.knots.push_back(u);
+  }
+  return s;
+}
+
+// The chain of a B-spline is what knots put in one by one make of it, to the bit, and evaluates to the same points.
+TEST(BSplines, TheChainIsThatOfKnotsInsertedOneByOne) {
+  test::Random random;
+  std::size_t cases = 0;
+  while (cases < 10'000U * static_cast<std::size_t>(test::soak())) {
+    const BSpline s = random_spline(random);
+    if (!(s.begin() < s.end())) continue;
+    ++cases;
+    const Curve chain = to_curve(s);
+    BSpline full = s;
+    const auto p = static_cast<std::ptrdiff_t>(s.degree);
+    for (const double u : s.knots)
+      if (u > s.begin() && u < s.end())
+        while (std::count(full.knots.begin(), full.knots.end(), u) < p) full = insert_knot(full, u);
+    const Curve twin = to_curve(full);
+    ASSERT_EQ(chain.breaks, twin.breaks);
+    ASSERT_EQ(chain.points.size(), twin.points.size());
+    for (std::size_t k = 0; k < chain.points.size(); ++k) ASSERT_LE(norm(chain.points[k] - twin.points[k]), 1e-13) << k;
+    for (int k = 0; k <= 8; ++k) {
+      const double u = s.begin() + (s.end() - s.begin()) * k / 8;
+      if (std::count(s.knots.begin(), s.knots.end(), u) > p) continue;  // a gap: either side's
+      ASSERT_LE(norm(evaluate(chain, u) - evaluate(s, u)), 1e-11) << u;
+    }
+  }
+}
+
+// It takes time by the number of points, not by its square.
+TEST(BSplines, LongOnesBecomeChainsInNoTime) {
+  BSpline s;
+  for (int k = 0; k < 300'000; ++k) s.points.push_back({k * 1.0, std::sin(k * 0.37), 0});
+  s.knots = clamped_knots(s.points.size(), s.degree);
+  const std::clock_t started = std::clock();
+  const Curve chain = to_curve(s);
+  EXPECT_EQ(chain.segment_count(), s.points.size() - 3);
+  EXPECT_LT(static_cast<double>(std::clock() - started) / CLOCKS_PER_SEC, 20) << "0.1 s; an hour by the square";
 }
 
 }  // namespace

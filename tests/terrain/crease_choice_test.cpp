@@ -127,6 +127,34 @@ TEST(CreaseLines, ALineGivenTwiceIsOne) {
   }
 }
 
+// Two surveys of one ridge: a part of it again, with vertices of its own that lie beside it by a rounding or by less
+// than a thousandth of a cell. The same fold, and no needles.
+TEST(CreaseLines, LinesThatRunOverEachOtherAreOne) {
+  const Raster raster = valley();
+  const Vec2 from = valley_line()[0][0], along = valley_line()[0][1] - from, side{along.y, -along.x};
+  test::Random random;
+  for (const double beside : {0.0, 1e-9, 3e-4 / norm(side)}) {
+    std::vector<std::vector<Vec2>> lines = valley_line();
+    std::vector<Vec2> again;
+    for (const double t : {0.4, 0.43711, 0.5012, 0.53, 0.6017, 0.7})
+      again.push_back(from + t * along + random.uniform(-beside, beside) * side);
+    lines.push_back(again);
+    std::reverse(again.begin(), again.end());
+    again.erase(again.begin() + 2);
+    lines.push_back(again);
+    CreaseLineNotes notes;
+    const Terrain terrain = refine_along_lines(raster, lines, {.vertices = 80}, &notes);
+    EXPECT_EQ(notes.lines, 3U);
+    EXPECT_EQ(notes.edges, notes.vertices - 1) << "one line from end to end";
+    EXPECT_LE(terrain.tin.vertex_count(), 80U);
+    EXPECT_LT(assess(terrain, raster).max_error, 1e-3) << beside;
+    for (const auto& t : terrain.tin.triangles) {
+      const Vec2 a = terrain.tin.points[t[0]], b = terrain.tin.points[t[1]], c = terrain.tin.points[t[2]];
+      EXPECT_GT(cross(b - a, c - a), 1e-2) << beside;
+    }
+  }
+}
+
 // Vertices near the lines give way to them; what they leave of the budget goes elsewhere, and crossings count.
 TEST(CreaseLines, TheBudgetIsSpentAndKept) {
   const Raster raster = valley();

@@ -180,21 +180,54 @@ KnotRemoval remove_knot(const BSpline& s, double u, double tolerance) {
   return result;
 }
 
+namespace {
+
+struct Refined {
+  std::vector<double> knots;
+  std::vector<Point4> points;
+};
+
+/// The spline with each of its knots `wanted` (ascending) `degree` times at least: insert_once again and again, from
+/// the left, on what lies to the left of the place alone. So it costs degree^2 a knot, and not the length of the
+/// spline.
+Refined with_full_knots(const BSpline& s, const std::vector<double>& wanted) {
+  const auto p = static_cast<std::size_t>(s.degree);
+  const std::vector<Point4> given = lift(s);
+  Refined out;
+  out.knots.reserve(s.knots.size() + p * wanted.size());
+  out.points.reserve(given.size() + p * wanted.size());
+  std::size_t next_knot = 0, next_point = 0;  // of those given: the first that are not taken over yet
+  for (const double u : wanted) {
+    for (; next_knot < s.knots.size() && s.knots[next_knot] <= u; ++next_knot) out.knots.push_back(s.knots[next_knot]);
+    auto copies = static_cast<std::size_t>(out.knots.end() - std::lower_bound(out.knots.begin(), out.knots.end(), u));
+    for (; copies < p; ++copies) {
+      const std::size_t k = out.knots.size() - 1;  // of the last knot that is not above u
+      while (out.points.size() <= k && next_point < given.size()) out.points.push_back(given[next_point++]);
+      std::vector<Point4>& c = out.points;
+      const auto knot = [&](std::size_t i) { return i <= k ? out.knots[i] : s.knots[next_knot + i - k - 1]; };
+      c.push_back(c[std::min(k, c.size() - 1)]);  // at the end of an unclamped curve the share of a point k is 0
+      for (std::size_t i = c.size() - 2; i + p > k; --i) {
+        const double a = (u - knot(i)) / (knot(i + p) - knot(i));
+        c[i] = a * c[i] + (1 - a) * c[i - 1];
+      }
+      out.knots.push_back(u);
+    }
+  }
+  out.knots.insert(out.knots.end(), s.knots.begin() + static_cast<std::ptrdiff_t>(next_knot), s.knots.end());
+  out.points.insert(out.points.end(), given.begin() + static_cast<std::ptrdiff_t>(next_point), given.end());
+  return out;
+}
+
+}  // namespace
+
 Curve to_curve(const BSpline& s) {
   validate(s);
   const auto p = static_cast<std::size_t>(s.degree);
-  std::vector<double> knots = s.knots;
-  auto c = lift(s);
   const double begin = s.begin(), end = s.end();
   std::vector<double> wanted;
   for (const double u : s.knots)
     if (u >= begin && u <= end && (wanted.empty() || u != wanted.back())) wanted.push_back(u);
-  for (const double u : wanted) {
-    while (static_cast<std::size_t>(std::count(knots.begin(), knots.end(), u)) < p) {
-      const auto k = static_cast<std::size_t>(std::upper_bound(knots.begin(), knots.end(), u) - knots.begin()) - 1;
-      insert_once(knots, c, p, u, k);
-    }
-  }
+  const auto [knots, c] = with_full_knots(s, wanted);
   Curve out;
   out.dimension = s.dimension;
   out.breaks = {begin};

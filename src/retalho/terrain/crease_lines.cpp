@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "retalho/core/error.h"
 #include "retalho/terrain/evaluate.h"
@@ -20,6 +23,8 @@ namespace retalho {
 namespace {
 
 using Line = std::vector<Vec3>;
+
+constexpr double kWelded = 1e-3;  // cells: lines so near to each other are one
 
 struct Box {
   Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
@@ -86,53 +91,125 @@ double distance(Vec2 p, Vec2 a, Vec2 b) {
   return norm(p - (a + t * d));
 }
 
-/// Marks the points within `reach` of a segment: they are met cell by cell of a lattice of that size.
-class Nearby {
+/// Points in the cells of a lattice, to be found from segments near them.
+class Lattice {
  public:
-  Nearby(const std::vector<Vec2>& points, double reach) : points_(points), reach_(reach) {
+  Lattice(std::span<const Vec2> points, double size) : points_(points), size_(size) {
     for (std::uint32_t k = 0; k < points.size(); ++k) cells_.push_back({cell(points[k].x), cell(points[k].y), k});
     std::sort(cells_.begin(), cells_.end());
-    near_.assign(points.size(), 0);
   }
-  void mark(Vec2 a, Vec2 b) {
-    const auto steps = static_cast<std::int64_t>(std::ceil(norm(b - a) / reach_)) + 1;
+  /// Calls `visit(k)` for the points within `reach`, at most the lattice's size, of a segment; more than once for some.
+  template <class Visit>
+  void near(Vec2 a, Vec2 b, double reach, const Visit& visit) const {
+    const auto steps = static_cast<std::int64_t>(std::ceil(norm(b - a) / size_)) + 1;
     for (std::int64_t s = 0; s <= steps; ++s) {
       const Vec2 p = a + (static_cast<double>(s) / static_cast<double>(steps)) * (b - a);
       for (std::int64_t i = cell(p.x) - 1; i <= cell(p.x) + 1; ++i) {
         const std::array<std::int64_t, 3> first{i, cell(p.y) - 1, -1}, last{i, cell(p.y) + 2, -1};
         const auto end = std::lower_bound(cells_.begin(), cells_.end(), last);
         for (auto at = std::lower_bound(cells_.begin(), cells_.end(), first); at != end; ++at)
-          if (distance(points_[static_cast<std::size_t>((*at)[2])], a, b) < reach_)
-            near_[static_cast<std::size_t>((*at)[2])] = 1;
+          if (const auto k = static_cast<std::size_t>((*at)[2]); distance(points_[k], a, b) < reach) visit(k);
       }
     }
   }
-  bool is_near(std::size_t k) const { return near_[k] != 0; }
 
  private:
-  std::int64_t cell(double v) const { return static_cast<std::int64_t>(std::floor(v / reach_)); }
+  std::int64_t cell(double v) const { return static_cast<std::int64_t>(std::floor(v / size_)); }
 
-  const std::vector<Vec2>& points_;
-  double reach_;
+  std::span<const Vec2> points_;
+  double size_;
   std::vector<std::array<std::int64_t, 3>> cells_;
-  std::vector<char> near_;
 };
+
+Vec2 plan(const Vec3& p) {
+  return {p.x, p.y};
+}
+
+/// Moves places within `reach` of each other together, of each group to the least in the order of x, then y.
+void weld_places(std::vector<Line>& lines, double reach, double spacing) {
+  std::vector<Vec2> places;
+  for (const Line& line : lines)
+    for (const Vec3& p : line) places.push_back(plan(p));
+  std::vector<std::uint32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    return places[i].x != places[j].x ? places[i].x < places[j].x : places[i].y < places[j].y;
+  });
+  const Lattice lattice(places, spacing);
+  std::vector<Vec2> moved = places;
+  std::vector<char> settled(places.size());
+  for (const std::uint32_t k : order) {
+    if (settled[k] != 0) continue;
+    lattice.near(places[k], places[k], reach, [&](std::size_t other) {
+      if (settled[other] == 0) moved[other] = places[k];
+      settled[other] = 1;
+    });
+  }
+  std::size_t k = 0;
+  for (Line& line : lines) {
+    for (Vec3& p : line) {
+      p.x = moved[k].x;
+      p.y = moved[k++].y;
+    }
+    line.erase(std::unique(line.begin(), line.end(), [](const Vec3& p, const Vec3& q) { return plan(p) == plan(q); }),
+               line.end());
+  }
+}
+
+/// Lines that run over each other become one there: places within `reach` are moved together, and a place so near to a
+/// segment becomes a vertex of it. Rounding and the surveyor's hand put slanting lines beside each other by less than
+/// that, and needles between them would have any slope.
+void weld(std::vector<Line>& lines, double reach, double spacing) {
+  weld_places(lines, reach, spacing);
+  std::vector<Vec2> places;
+  for (const Line& line : lines)
+    for (const Vec3& p : line) places.push_back(plan(p));
+  const Lattice lattice(places, spacing);
+  for (Line& line : lines) {
+    Line whole;
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      whole.push_back(line[k]);
+      if (k + 1 == line.size()) break;
+      const Vec2 a = plan(line[k]), d = plan(line[k + 1]) - a;
+      std::vector<std::pair<double, Vec2>> between;
+      lattice.near(a, a + d, reach, [&](std::size_t other) {
+        const Vec2 p = places[other];
+        if (!(p == a) && !(p == plan(line[k + 1]))) between.emplace_back(dot(p - a, d), p);
+      });
+      std::sort(between.begin(), between.end(), [](const auto& p, const auto& q) {
+        return std::tie(p.first, p.second.x, p.second.y) < std::tie(q.first, q.second.x, q.second.y);
+      });
+      for (const auto& [along, p] : between)
+        if (!(p == plan(whole.back()))) whole.push_back({p.x, p.y, line[k].z});
+    }
+    line = std::move(whole);
+  }
+}
+
+std::size_t count_places(const std::vector<Line>& lines) {
+  std::vector<std::pair<double, double>> places;
+  for (const Line& line : lines)
+    for (const Vec3& p : line) places.emplace_back(p.x, p.y);
+  std::sort(places.begin(), places.end());
+  return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+}
 
 /// The vertices of `base` without those within `reach` of a line, and the lines, which lie on `base`.
 ConstrainedTin among_lines(const Terrain& base, std::vector<Line>& lines, const Box& box, double reach,
                            const Context& context) {
   const TerrainEvaluator surface(base, context);
-  Nearby nearby(base.tin.points, reach);
+  const Lattice lattice(base.tin.points, reach);
+  std::vector<char> near(base.tin.vertex_count());
   for (Line& line : lines)
     for (std::size_t k = 0; k < line.size(); ++k) {
-      line[k].z = surface.value({line[k].x, line[k].y});
-      if (k > 0) nearby.mark({line[k - 1].x, line[k - 1].y}, {line[k].x, line[k].y});
+      line[k].z = surface.value(plan(line[k]));
+      if (k > 0) lattice.near(plan(line[k - 1]), plan(line[k]), reach, [&](std::size_t v) { near[v] = 1; });
     }
   std::vector<Vec3> points;
   for (std::size_t v = 0; v < base.tin.vertex_count(); ++v) {
     const Vec2 p = base.tin.points[v];
     const bool corner = (p.x == box.low.x || p.x == box.high.x) && (p.y == box.low.y || p.y == box.high.y);
-    if (corner || !nearby.is_near(v)) points.push_back({p.x, p.y, base.tin.heights[v]});
+    if (corner || near[v] == 0) points.push_back({p.x, p.y, base.tin.heights[v]});
   }
   return triangulate_points(points, lines, nullptr, nullptr, context);
 }
@@ -150,12 +227,11 @@ Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec
   const double cell = std::sqrt(raster.cell_width * raster.cell_height);
   const double spacing = std::max(cell, std::sqrt(extent.x * extent.y / static_cast<double>(options.vertices)));
   std::vector<Line> lines;
-  std::size_t on_lines = 0;
   for (const std::vector<Vec2>& line : given)
-    for (const Line& part : clipped(box, line)) {
-      lines.push_back(with_steps(part, spacing));
-      on_lines += lines.back().size();
-    }
+    for (Line& part : clipped(box, line)) lines.push_back(std::move(part));
+  weld(lines, kWelded * cell, spacing);
+  for (Line& line : lines) line = with_steps(line, spacing);
+  const std::size_t on_lines = count_places(lines);
   if (lines.empty()) throw BadInput("none of the lines to fold along is inside the grid");
   if (on_lines + 4 > options.vertices)
     throw UsageError(fmt::format("the lines to fold along need {} vertices of a budget of {}: give more", on_lines,

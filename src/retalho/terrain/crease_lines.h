@@ -21,7 +21,8 @@ struct CreaseLineNotes {
 /// As refine_surface with the budget `options.vertices`, of which the lines get theirs: one at every place of theirs
 /// and as many between as vertices elsewhere are apart. Triangles keep to the lines, all edges along them are creases,
 /// and heights and gradients of all sectors are fitted to all valid cells. `lines`: local coordinates; what lies
-/// outside of the box of the valid cells is cut off. Vertices within half a cell of a line give way to it. The numbers
+/// outside of the box of the valid cells is cut off, and what is within a thousandth of a cell of each other is one:
+/// lines may run over each other, with vertices of their own. Vertices within half a cell of a line give way to it. The numbers
 /// are those of the vertices, one for each crease and two for each further sector. The same from any number of threads.
 /// Throws as refine_surface and triangulate_points, UsageError for a tolerance, a flat surface, or lines that need more
 /// vertices than the budget has, BadInput where no line is inside.
