@@ -185,8 +185,8 @@ FitKind resolve_fit(const SurfaceFlags& flags, bool from_points) {
   if (fit == FitKind::interpolate) return fit;
   if (from_points) throw UsageError("--fit " + flags.fit + " takes grids: survey points are interpolated", {}, "--fit");
   if (!flags.gradients.empty())
-    throw UsageError("--gradients and --fit " + flags.fit + " exclude each other: the fit sets the gradients", {},
-                     "--gradients");
+    throw UsageError(fmt::format("--gradients and --fit {} exclude each other: the fit sets the gradients", flags.fit),
+                     {}, "--gradients");
   if (flags.cross_derivative != kCrossDerivatives[0])
     throw UsageError("--fit " + flags.fit + " takes --cross-derivative perpendicular", {}, "--cross-derivative");
   return fit;

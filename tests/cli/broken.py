@@ -104,6 +104,8 @@ CHANGED = [
     ("m.retalho", "head.retalho", lambda d: d[:20], "info {f}", 4, "bytes of header"), ("m.retalho", "half.retalho", lambda d: d[:len(d) // 2], "info {f}", 4, "it was cut short"),
     ("m.retalho", "more.retalho", lambda d: d + b"xyz", "info {f}", 4, "bytes and should have"), ("m.retalho", "flip.retalho", lambda d: with_bytes(d, len(d) - 3, bytes([d[-3] ^ 1])), "info {f}", 4, "damaged: the checksum does not fit the content"),
     ("m.retalho", "new.retalho", lambda d: with_bytes(d, 8, struct.pack("<H", 99)), "info {f}", 4, "written by a newer Retalho (format 99"),
+    ("s.tif", "cut.tif", lambda d: d[:-60], "info {f}", 4, "is damaged or cut off: "), ("s.shp", "cut.shp", lambda d: d[:-100], "curve {f}", 4, "is damaged or cut off: "),
+    ("s.shp", "cut.shp", lambda d: d[:-100], "info {f} --height-field elev", 4, "is damaged or cut off: "),
     ("c.retalho", "c-head.retalho", lambda d: d[:7], "info {f}", 4, "within its header"), ("c.retalho", "c-new.retalho", lambda d: with_bytes(d, 4, b"\x63"), "info {f}", 4, "written by a newer Retalho (compact form 99"),
     ("c.retalho", "c-half.retalho", lambda d: d[:len(d) // 2], "info {f}", 4, "it was cut short"), ("c.retalho", "c-more.retalho", lambda d: d + b"xyz", "info {f}", 4, "bytes and should hold"),
     ("c.retalho", "c-flip.retalho", lambda d: with_bytes(d, len(d) - 3, bytes([d[-3] ^ 1])), "info {f}", 4, "damaged: the checksum does not fit the content"),
@@ -124,6 +126,10 @@ INDICES = [
 ]
 
 
+def void(data):
+    return re.sub(rb'"file": *"[^"]*"', b'"file": null', data)
+
+
 def make(stock):
     """Writes the files, of those that `stock` holds, and returns the rows."""
     rows = []
@@ -132,11 +138,15 @@ def make(stock):
         rows.append((words.format(f=name), code, part))
     for old, name, change, words, code, part in CHANGED:
         (stock / name).write_bytes(change((stock / old).read_bytes()))
+        if old.endswith(".shp"):
+            for other in (".shx", ".dbf"):  # stay whole
+                (stock / name).with_suffix(other).write_bytes((stock / old).with_suffix(other).read_bytes())
         rows.append((words.format(f=name), code, part))
     tiled = {file.name: file.read_bytes() for file in (stock / "tiled").iterdir()}
-    for name, change, part in INDICES:
+    for name, change, part in [*INDICES, ("t-void", void, None)]:
         (stock / name).mkdir()
         for file, data in tiled.items():
             (stock / name / file).write_bytes(change(data) if file == "index.json" else data)
-        rows.append((f"sample {name} --at 1030,2030", 4, part))
+        if part:
+            rows.append((f"sample {name} --at 1030,2030", 4, part))
     return rows

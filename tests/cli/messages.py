@@ -3,11 +3,13 @@
 
   messages.py --program FILE
 
-A row: the command, the exit code, a part of the message. Files are named as in FILES; `{x}` stands for nothing else.
+A row: the command, the exit code, a part of the message. Files are named as in FILES; words like NAME=value in front of
+a command set its environment.
 """
 import concurrent.futures
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -73,6 +75,11 @@ FILES = {
     "bandless.vrt": '<VRTDataset rasterXSize="4" rasterYSize="4"></VRTDataset>',
     "utm31.vrt": '<VRTDataset rasterXSize="4" rasterYSize="4"><SRS>EPSG:32631</SRS><GeoTransform>0,1,0,0,0,-1</GeoTransform><VRTRasterBand dataType="Float32" band="1"/></VRTDataset>',
     "utm32.vrt": '<VRTDataset rasterXSize="4" rasterYSize="4"><SRS>EPSG:32632</SRS><GeoTransform>0,1,0,0,0,-1</GeoTransform><VRTRasterBand dataType="Float32" band="1"/></VRTDataset>',
+    "million.vrt": '<VRTDataset rasterXSize="1100" rasterYSize="1000"><GeoTransform>0,1,0,0,0,-1</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="1">g.asc</SourceFilename>'
+    '<SrcRect xOff="0" yOff="0" xSize="12" ySize="10"/><DstRect xOff="0" yOff="0" xSize="1100" ySize="1000"/></SimpleSource></VRTRasterBand></VRTDataset>',
+    "globe/layer.json": "{}", "corner.json": curves('{"kind": "polyline", "points": [[0,0],[1,2],[2,0]]}'),
+    "back.json": curves('{"kind": "spline", "points": [[0,0],[2,2],[1,3]], "parameters": "x"}'),
+    "interval.json": curves('{"kind": "power", "coefficients": [[0,0],[1,2]], "interval": [1, 0]}'),
 }
 # Made by the program itself.
 MADE = [["fit", "g.asc", "-o", "m.retalho", "--max-error", "1", "--refine", "flat"], ["fit", "p.xyz", "-o", "points.retalho"],
@@ -80,7 +87,8 @@ MADE = [["fit", "g.asc", "-o", "m.retalho", "--max-error", "1", "--refine", "fla
         ["patch", "good.json", "-o", "patch.retalho", "--divisions", "4"],
         ["reconstruct", str(ROOT / "examples/tetraquads/sphere.json"), "-o", "ball.retalho"],
         ["fit", "g.asc", "-o", "c.retalho", "--max-error", "1", "--format", "compact"], ["fit", "g.asc", "-o", "ps.retalho", "--max-error", "1", "--surface", "powell-sabin", "--refine", "flat"],
-        ["fit", "g.asc", "-o", "tiled", "--tiles", "16", "--max-error", "1"]]
+        ["fit", "g.asc", "-o", "tiled", "--tiles", "16", "--max-error", "1"],
+        ["sample", "m.retalho", "-o", "s.tif"], ["contour", "g.asc", "-o", "s.shp", "--interval", "5"]]
 
 ROWS = [
     # What any command says.
@@ -93,7 +101,8 @@ ROWS = [
     ("fit g.asc -o o.retalho --vertices 9 --ratio 1%", 2, "say the same in two ways"), ("fit g.asc -o o.retalho --max-error -1", 2, "--max-error must be 0 or more, not"),
     ("fit g.asc -o o.retalho --vertices 2", 2, "--vertices must be 3 or more"), ("fit g.asc -o o.retalho --ratio 2", 2, "is not a share of the valid cells"),
     ("fit g.asc -o o.retalho --surface smoth", 2, "is one of linear, powell-sabin, clough-tocher; not 'smoth'"), ("fit p.xyz -o o.retalho --tiles 64", 2, "--tiles takes grids"),
-    ("fit g.asc -o o.retalho --jobs 2", 2, "--jobs goes with --tiles"), ("fit g.asc -o o --tiles 64", 2, "--tiles takes one of --max-error E"),
+    ("fit g.asc -o o.retalho --jobs 2", 2, "--jobs goes with --tiles"), ("fit g.asc -o o --tiles 64", 2, "--tiles takes one of --max-error E"), ("fit g.asc -o o --tiles 64 --max-error 1 --format compact", 2, "--tiles writes exact models: leave --format compact out"),
+    ("fit g.asc -o o --tiles 64 --max-error 1 --gradients quadratic", 2, "--tiles takes --gradients normals and --cross-derivative perpendicular"),
     ("fit g.asc -o o --tiles 64 --max-error 1 --refine surface", 2, "--tiles takes --refine flat"), ("fit g.asc -o p.xyz --tiles 64 --max-error 1", 5, "is a file: with --tiles the output is a folder"),
     ("fit g.asc -o o.retalho --breaklines c.json", 2, "--breaklines goes with points"), ("fit p.xyz -o o.retalho --format compact", 2, "takes grids: its vertices are their cells"),
     ("fit g.asc -o o.retalho --format compact --gradients normals", 2, "fits the gradients: leave --gradients out"),
@@ -183,6 +192,14 @@ ROWS = [
     ("curve c.json -o o.svg --cut 1 0", 2, "the part from 1 to 0 is empty"), ("curve c.json -o o.xyz", 2, "must end in"),
     ("fit g.asc -o .. --max-error 1", 2, "must end in .retalho"), ("info", 2, "FILE is required"),
     ("contour utm.retalho -o o.gpkg --levels 5 --area 1,1,0,0", 2, "has no option"), ("compare g.asc utm.retalho", 3, "no valid cell of the grid lies on the model"),
+    ("contour million.vrt --interval 50 --compare-surfaces o.png --zoom 0", 2, "takes every cell, a million at most, not 1100000: show fewer (--zoom)"),
+    ("contour g.asc -o o.svg --interval 5 --sheet 30x30", 2, "is no sheet: A0 to A6, or WIDTHxHEIGHT in mm, 80 to 5000 each (297x210)"),
+    ("contour g.asc -o o.pdf --interval 5 --title \udcff", 5, "cannot draw the sheet: input string not valid UTF-8"), ("RETALHO_FONT=none.ttf render g.asc -o o.png", 4, "cannot read the font 'none.ttf': install fonts-dejavu-core"),
+    ("GDAL_SKIP=DXF contour g.asc -o o.dxf --interval 5", 5, "this GDAL has no driver DXF"), ("GDAL_SKIP=DXF curve c.json -o o.dxf --flatten 0.1", 5, "this GDAL has no driver DXF"),
+    ("mesh utm.retalho -o globe/layer.json", 5, "' exists: give another folder, or --overwrite"),
+    ("curve corner.json -o o.json --convert hermite", 2, "the curve is not C1: it has no Hermite form with one tangent a point"), ("curve interval.json", 3, "expected two ascending numbers"), ("curve back.json", 3, "with the parameters \"x\" they must ascend"),
+    ("fit g.asc -o o.retalho --fit z-only --gradients normals --refine flat", 2, "exclude each other: the fit sets the gradients"), ("render g.asc -o o.png --size 1200", 2, "is not WxH in pixels, such as 1200x800 (16 to 20000)"),
+    ("contour t-void -o o.gpkg --interval 5", 4, "no tile of 't-void' holds any data"), ("mesh t-void -o o.ply", 4, "no tile of 't-void' holds any data"),
     # readers
     ("info folder", 4, "is a folder: give the name of a raster file"), ("info turned.vrt", 3, "the grid is rotated or sheared"), ("info quarter.vrt", 3, "the grid is rotated by a quarter turn"), ("info thin.vrt", 3, "the cells have no size"),
     ("info complex.vrt", 3, "holds complex numbers"), ("info scale.vrt", 3, "make no heights"), ("info bandless.vrt", 4, "bandless.vrt"), ("info g.asc --band 2", 3, "it has bands 1 to 1"), ("info good.pgm --band 2", 3, "a PGM has one band"),
@@ -212,7 +229,10 @@ def main():
 
         def look(row):
             words, code, part = row
-            done = subprocess.run([program, *words.split(), "-q"], cwd=stock, capture_output=True, text=True, errors="replace", timeout=60)
+            command = words.split()
+            first = next(k for k, word in enumerate(command) if not re.match("[A-Z_]+=", word))
+            settings = dict(word.split("=", 1) for word in command[:first])
+            done = subprocess.run([program, *command[first:], "-q"], cwd=stock, env={**os.environ, **settings}, capture_output=True, text=True, errors="replace", timeout=60)
             if done.returncode != code or part not in done.stderr or "retalho: " not in done.stderr:
                 failures.append(f"{words}: exit {done.returncode}, not {code} with '{part}': {done.stderr.strip()[-300:]}")
 

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "retalho/core/error.h"
+#include "support/errors.h"
 
 namespace retalho {
 namespace {
@@ -186,6 +187,42 @@ TEST_F(AtomicFileTest, NamesTheMissingFolder) {
   }
   EXPECT_THROW(read_file(name("nothing")), CannotRead);
   EXPECT_THROW(read_file(folder_.string()), CannotRead);
+}
+
+TEST_F(AtomicFileTest, WhatCannotBeWrittenIsNamed) {
+  test::expect_refused<CannotWrite>({
+      {"'' is not a file name: give the output's name", [] { AtomicFile("", false); }},
+      {"cannot rename to '",
+       [&] {
+         AtomicFile file(name("x"), true);
+         write_file(file.temporary(), "new", true);
+         fs::create_directory(name("x"));  // after the name was found free
+         file.commit();
+       }},
+  });
+  EXPECT_EQ(files(), 1U) << "the folder alone";
+}
+
+TEST_F(AtomicFileTest, AFolderThatMayNotBeWrittenIntoIsNamed) {
+  // In a child that is nobody: what may not be written does not hinder root.
+  fs::permissions(folder_,
+                  fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    constexpr uid_t kNobody = 65534;
+    if (::getuid() == 0 && ::setuid(kNobody) != 0) ::_exit(2);
+    try {
+      const AtomicFile file(name("x"), false);
+    } catch (const CannotWrite& error) {
+      ::_exit(test::holds(error.what(), "cannot write into the folder '") ? 0 : 3);
+    }
+    ::_exit(4);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  fs::permissions(folder_, fs::perms::owner_all);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The scripts that judge: the counter of scripts/test, the table of scripts/targets and the counts of scripts/fuzz.
+// The scripts that judge: the counter of scripts/test, the table of scripts/targets, the counts of scripts/fuzz, and the
+// messages without a test.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -125,6 +126,23 @@ TEST_F(Fuzz, WordsThatAreNoneAreRefused) {
   EXPECT_EQ(fuzz("1 nonsense").code, 2);
   EXPECT_EQ(fuzz("0 pgm").code, 2);
   EXPECT_EQ(fuzz("--until many pgm").last_line, "fuzz: --until takes a number of executions, not 'many'");
+}
+
+TEST(Messages, EveryMessageHasATest) {
+  const Outcome run = run_script("messages --strict");
+  EXPECT_EQ(run.code, 0) << run.last_line << " (scripts/messages lists them)";
+}
+
+TEST(Messages, AMessageWithoutATestIsFound) {
+  const test::ScratchFolder made;
+  made.put("src/a.cpp", "throw BadInput(fmt::format(\"the grid '{}' has the colour of \"\n\"mustard\", name));\n");
+  made.put("tests/a_test.cpp", "holds(\"has the color of mustard\")");
+  const std::string words = "messages --strict --root '" + made.path().string() + "'";
+  EXPECT_NE(run_script(words).last_line.find("messages: 1, of which 0 cannot be tested and 1 are named by no test"),
+            std::string::npos);
+  EXPECT_EQ(run_script(words).code, 1);
+  made.put("tests/a_test.cpp", "holds(\"the colour of mustard\")");
+  EXPECT_NE(run_script(words).last_line.find("and 0 are named by no test"), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "retalho/core/error.h"
 #include "retalho/patch/joins.h"
+#include "retalho/patch/multigrid.h"
 #include "retalho/patch/surface.h"
 #include "support/errors.h"
 #include "support/sample_patches.h"
@@ -19,6 +20,20 @@ TEST(PatchMessages, AreThese) {
       {"a patch is refined by a factor of 1 at least", [&] { refine(set.patches[0], surface, 0); }},
       {"a surface is moved with another domain or recovery than it was made with: make a new one",
        [&] { surface.move(set.patches[1]); }},
+  });
+}
+
+TEST(PatchMessages, ASystemWithoutASolutionIsNamed) {
+  ConvexSystem circle;  // each unknown is the other one: nothing says where they are
+  circle.first = {0, 1, 2};
+  circle.columns = {1, 0};
+  circle.values = {1, 1};
+  std::vector<Vec2> x(2);
+  expect_refused<Error>({
+      {"the system of the parameters could not be factored",
+       [&] {
+         solve_direct(circle, {{1, 0}, {0, 1}}, x);
+       }},
   });
 }
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import pathlib
+import re
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 import retalho
+import xarray
 
 Z = np.add.outer(np.arange(12.0), 2 * np.arange(15.0)) + np.cos(np.arange(15.0))
 POINTS = np.array([[0, 0, 1], [10, 0, 2], [0, 10, 3], [10, 11, 5], [4, 6, 2]], dtype=np.float64)
@@ -35,6 +37,19 @@ def plan(folder: pathlib.Path, **options: object) -> retalho.TilePlan:
     return retalho.TilePlan(file, **(options or {"max_error": 1.0, "size": 16}))
 
 
+def tiles(folder: pathlib.Path) -> retalho.TiledModel:
+    plan(folder).make(folder / "tiles")
+    return retalho.TiledModel(folder / "tiles")
+
+
+def void(folder: pathlib.Path) -> retalho.TiledModel:
+    """A tiled model whose tiles are all said to hold nothing."""
+    plan(folder).make(folder / "tiles")
+    index = folder / "tiles" / "index.json"
+    index.write_text(re.sub(r'"file": *"[^"]*"', '"file": null', index.read_text()))
+    return retalho.TiledModel(folder / "tiles")
+
+
 ROWS: list[tuple[str, Callable[[], object]]] = [
     # arrays
     ("points must have the shape (n, 3)", lambda: retalho.fit_points(np.zeros((4, 5)))),
@@ -54,6 +69,11 @@ ROWS: list[tuple[str, Callable[[], object]]] = [
      lambda: retalho.fit(Z, max_error=1, refine="surface", gradients="normals")),
     ("heights alone are refined to a number of vertices, not to a largest error", lambda: retalho.fit(Z, max_error=1, refine="surface", fit="z-only")),
     ("refine='surface' takes a max_error over 0", lambda: retalho.fit(Z, max_error=0, refine="surface")),
+    ("creases have gradients of their own on each side: leave fit='z-only' out", lambda: retalho.fit(Z, vertices=30, creases="auto", fit="z-only")),
+    ("creases go with refine='surface'", lambda: retalho.fit(Z, vertices=30, creases="auto", refine="flat")),
+    ("z must be a DataArray of two dimensions, not ('y', 'x', 'band'): select the others first, as in z.squeeze() or z.isel(band=0)",
+     lambda: retalho.fit(xarray.DataArray(np.zeros((3, 3, 2)), dims=("y", "x", "band")), max_error=1)),
+    ("a least-squares fit takes cross_derivative='perpendicular'", lambda: retalho.fit(Z, max_error=1, fit="least-squares", cross_derivative="cubic")),
     ("there are no points", lambda: retalho.fit_points(np.zeros((0, 3)))),
     ("points holds a coordinate that is not finite", lambda: retalho.fit_points(np.array([[0, 0, 1], [1, 0, NAN], [0, 1, 2]]))),
     ("threads must be 0 (all cores) or more, not -1", lambda: retalho.fit(Z, max_error=1, threads=-1)),
@@ -72,6 +92,11 @@ ROWS: list[tuple[str, Callable[[], object]]] = [
     ("say which levels: levels=[...], or interval=... (with base=...)", lambda: retalho.contours(Z)),
     ("levels holds nan", lambda: retalho.contours(Z, [1.0, NAN])),
     ("z holds no data", lambda: retalho.contours(np.full((4, 4), NAN), interval=1.0)),
+    # pictures
+    ("size must be (width, height), 16 to 20,000 pixels each, not (3, 3)", lambda: retalho.render(Z, size=(3, 3))),
+    ("view must be 'plan' or 'perspective', not 'side'", lambda: retalho.render(Z, view="side")),
+    ("colors must be 'hypsometric' or 'gray', not 'red'", lambda: retalho.render(Z, colors="red")),
+    ("light must be (azimuth, altitude), degrees, the altitude above 0 and at most 90", lambda: retalho.render(Z, light=(0, 0))),
     # curves
     ("order must be 0 to 3, not 4", lambda: CURVES[0].derivative(0.5, order=4)),
     # meshes
@@ -111,6 +136,8 @@ TILES: list[tuple[str, Callable[[pathlib.Path], object]]] = [
     ("looks must be of all 1 tiles, not 0", lambda f: plan(f, vertices=100, size=16).areas([], 0, 0)),
     ("areas must be nine, not 2", lambda f: plan(f).count(0, 0, 1.0, [True, False])),
     ("there is no tile (5, 0): the grid has", lambda f: plan(f).tin_name(5, 0)),
+    ("bounds must be four numbers (left, bottom, right, top) in the CRS", lambda f: tiles(f).part((1, 2, 3))),
+    ("' holds any data", lambda f: void(f).contours(interval=1.0)),
     ("z is a file, which says itself where it lies: leave transform and crs out",
      lambda f: (plan(f), retalho.fit(f / "grid.asc", max_error=1, crs="EPSG:25832"))),
 ]

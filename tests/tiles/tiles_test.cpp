@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <ostream>
@@ -21,6 +22,8 @@
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
 #include "retalho/tiles/make.h"
+#include "support/errors.h"
+#include "support/sample_terrain.h"
 #include "support/support.h"
 #include "tiles/made.h"
 
@@ -432,6 +435,51 @@ TEST(Windows, ArePartsOfTheWhole) {
   EXPECT_THROW(read_raster(dem, {.window = CellWindow{0, 0, 132, 5}}), UsageError);
   EXPECT_THROW(read_raster(dem, {.window = CellWindow{-1, 0, 5, 5}}), UsageError);
   EXPECT_THROW(read_raster(dem, {.window = CellWindow{5, 5, 0, 5}}), UsageError);
+}
+
+TEST(Tiles, CallsThatDoNotFitTheirPlanAreNamed) {
+  const Made made(false);
+  test::expect_refused<UsageError>({
+      {"1 looks at tiles, where the grid has 12",
+       [&] { settle(made.plan, std::vector<TileLook>(1), [](double) { return std::size_t{0}; }); }},
+      {"0 tiles are made, where the grid has 12", [&] { finish_tiles(made.plan, {}, {}, made.tiles, false); }},
+  });
+}
+
+TEST(Tiles, TilesThatAreNotTheirNeighboursAreNamed) {
+  // The second tile's file is another one than the index was made for, with its checksum put right.
+  const Made made(false, SurfaceKind::powell_sabin);
+  const TiledIndex index = make_tiles(made.plan, made.tiles, 2, false);
+  const auto with = [&](const std::function<void(Terrain&)>& change) {
+    TiledIndex changed = index;
+    TileEntry& entry = changed.tiles[1];
+    Terrain tile = load_tile(index, entry, made.tiles);
+    change(tile);
+    entry.file = "changed.retalho";
+    save_model(tile, made.tiles + "/changed.retalho", true);
+    entry.checksum = content_digest(read_file(made.tiles + "/changed.retalho"));
+    write_tiled_index(changed, made.tiles, true);
+    load_tiled_model(made.tiles);
+  };
+  const auto raised = [](Terrain& tile) {
+    for (double& z : tile.tin.heights) z += 1;
+  };
+  const auto split = [](Terrain& tile) {
+    for (double& s : tile.edge_split) s = 0.5 + 0.5 * (s - 0.5);
+  };
+  test::expect_refused<CannotRead>({
+      {"and its neighbour differ at their common cell (", [&] { with(raised); }},
+      {"and its neighbour split an edge of their seam in two ways: make the tiled model again", [&] { with(split); }},
+      {"changed.retalho' holds another surface than index.json says",
+       [&] { with([](Terrain& tile) { tile = test::sample_terrain({.kind = SurfaceKind::powell_sabin}); }); }},
+  });
+  TiledIndex empty = index;
+  for (TileEntry& entry : empty.tiles) entry.file.clear();
+  write_tiled_index(empty, made.tiles, true);
+  test::expect_refused<CannotRead>({{"' holds any data", [&] { load_tiled_model(made.tiles); }},
+                                    {"no tile of '", [&] { load_tiled_model(made.tiles); }}});
+  test::expect_refused<BadInput>(
+      {{"lies where it was asked for", [&] { load_tiled_part(made.tiles, [](const TileEntry&) { return false; }); }}});
 }
 
 }  // namespace

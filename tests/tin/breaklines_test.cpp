@@ -168,5 +168,23 @@ TEST(Breaklines, ManyLinesAcrossManyTriangles) {
   EXPECT_GE(made.edges.size(), 39U);
 }
 
+// So far from the origin there are few doubles between two lines, and every rounded crossing moves what it lies on: the
+// crossings settle within the eight rounds all the same.
+TEST(Breaklines, CrossingsSettleWhereDoublesAreFew) {
+  test::Random random;
+  for (const double base : {0x1p52, 0x1p20})
+    for (const std::size_t doubles : {40U, 4000U}) {
+      const double step = base * 0x1p-52, end = base + step * static_cast<double>(doubles);
+      const auto place = [&] {
+        const auto at = [&] { return base + step * static_cast<double>(random.index(doubles)); };
+        return Vec3{at(), at(), 0};
+      };
+      std::vector<std::vector<Vec3>> lines(60);
+      for (auto& line : lines) line = {place(), place()};
+      const std::vector<Vec3> corners{{base, base, 0}, {end, base, 0}, {base, end, 0}};
+      EXPECT_NO_THROW(triangulate_points(corners, lines)) << base << " " << doubles;
+    }
+}
+
 }  // namespace
 }  // namespace retalho
