@@ -1,5 +1,5 @@
-// The scripts that judge: the counter of scripts/test, the table of scripts/targets, the counts of scripts/fuzz, and the
-// messages without a test.
+// The scripts that judge: the counter of scripts/test, the table of scripts/targets, the counts of scripts/fuzz, and
+// the messages without a test.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -22,10 +22,10 @@ struct CreaseLineNotes {
 /// and as many between as vertices elsewhere are apart. Triangles keep to the lines, all edges along them are creases,
 /// and heights and gradients of all sectors are fitted to all valid cells. `lines`: local coordinates; what lies
 /// outside of the box of the valid cells is cut off, and what is within a thousandth of a cell of each other is one:
-/// lines may run over each other, with vertices of their own. Vertices within half a cell of a line give way to it. The numbers
-/// are those of the vertices, one for each crease and two for each further sector. The same from any number of threads.
-/// Throws as refine_surface and triangulate_points, UsageError for a tolerance, a flat surface, or lines that need more
-/// vertices than the budget has, BadInput where no line is inside.
+/// lines may run over each other, with vertices of their own. Vertices within half a cell of a line give way to it. The
+/// numbers are those of the vertices, one for each crease and two for each further sector. The same from any number of
+/// threads. Throws as refine_surface and triangulate_points, UsageError for a tolerance, a flat surface, or lines that
+/// need more vertices than the budget has, BadInput where no line is inside.
 Terrain refine_along_lines(const Raster& raster, std::span<const std::vector<Vec2>> lines,
                            const SurfaceRefineOptions& options, CreaseLineNotes* notes = nullptr,
                            const Context& context = {});
