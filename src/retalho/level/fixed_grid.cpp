@@ -7,6 +7,7 @@
 #include "retalho/core/parallel.h"
 #include "retalho/core/variants.h"
 #include "retalho/level/fixed_levels.h"
+#include "retalho/level/surface_size.h"
 #include "retalho/terrain/bicubic_rows.h"
 
 namespace retalho {
@@ -78,17 +79,18 @@ FixedGrid fix_grid(const BicubicGrid& grid, const Context& context) {
 FixedRows::FixedRows(const Raster& raster, const BicubicOptions& options, const Context& context)
     : raster_(raster), options_(options) {
   check_bicubic(raster);
-  constexpr int kRows = 64;
-  const auto count = static_cast<std::size_t>((raster.rows + kRows - 1) / kRows);
-  const std::size_t slots = std::min(slot_count(context), count);
+  context.report("spline", 0);
+  // Only the power of two above the largest ordinate counts: the surface is made where it may matter.
+  const SurfaceSize size = bound_surface(raster, 64, context);
+  const std::size_t count = size.unsure.size(), slots = std::min(slot_count(context), count);
   std::vector<BicubicGrid> windows(slots);
   std::vector<double> of_window(slots, 0);
   const Context alone{.threads = 1, .cancel = context.cancel};
-  double largest = 0;
+  double largest = size.least;
   parallel_in_order(
       count, context,
       [&](std::size_t i, std::size_t slot) {
-        const int first = static_cast<int>(i) * kRows, last = std::min(raster.rows, first + kRows);
+        const auto [first, last] = size.unsure[i];
         const int above = make_bicubic_rows(raster, first, last, options_, windows[slot], alone);
         of_window[slot] =
             largest_ordinate(windows[slot], raster.index(0, first - above), raster.index(0, last - above));
@@ -97,6 +99,7 @@ FixedRows::FixedRows(const Raster& raster, const BicubicOptions& options, const 
         largest = std::max(largest, of_window[slot]);
         context.report("spline", static_cast<double>(i + 1) / static_cast<double>(count));
       });
+  context.report("spline", 1);
   per_unit_ = quanta_per_unit(largest);
 }
 

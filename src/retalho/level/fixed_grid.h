@@ -18,9 +18,10 @@ struct FixedGrid {
   int columns = 0, rows = 0;
   int held_first = 0, held_rows = 0;  ///< the rows that are here
   double cell_width = 1, cell_height = 1;
-  double per_unit = 1;                   ///< quanta a height unit, a power of two
-  Mask valid;                            ///< of the rows that are here; empty: all
-  std::vector<std::int32_t> z, u, v, t;  ///< height, zu / 3, zv / 3, zuv / 9; their magnitudes add up to less than 2^24
+  double per_unit = 1;  ///< quanta a height unit, a power of two
+  Mask valid;           ///< of the rows that are here; empty: all
+  std::vector<std::int32_t> z, u, v,
+      t;  ///< height, zu / 3, zv / 3, zuv / 9; their magnitudes add up to less than 2^24
 
   std::size_t node(int column, int row) const {
     return static_cast<std::size_t>(row - held_first) * static_cast<std::size_t>(columns) +
@@ -46,8 +47,8 @@ FixedGrid fix_grid(const BicubicGrid& grid, const Context& context);
 /// threads.
 class FixedRows {
  public:
-  /// Looks at all of the surface once, for the size of its largest ordinate. Throws BadInput for a grid without a
-  /// bicubic surface.
+  /// Looks at all samples once, for the size of the largest ordinate, and makes the surface where they leave it open.
+  /// Throws BadInput for a grid without a bicubic surface.
   FixedRows(const Raster& raster, const BicubicOptions& options, const Context& context);
 
   double per_unit() const { return per_unit_; }

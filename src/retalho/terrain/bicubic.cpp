@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
@@ -81,6 +82,18 @@ void flatten_tangents(BicubicGrid& g, RowRange rows, const Context& context) {
   });
 }
 
+/// n heights, 0 where there is none; is there such a one?
+template <class T>
+RETALHO_VARIANTS bool take_heights(const T* from, std::size_t n, double* to) {
+  std::uint64_t voids = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto h = static_cast<double>(from[i]);
+    voids |= h == h ? 0U : 1U;
+    to[i] = h == h ? h : 0;
+  }
+  return voids != 0;
+}
+
 /// Rows [first, last) of the raster as the grid's samples.
 void take_rows(const Raster& raster, int first, int last, BicubicGrid& g) {
   g.columns = raster.columns;
@@ -90,16 +103,8 @@ void take_rows(const Raster& raster, int first, int last, BicubicGrid& g) {
   const std::size_t n = static_cast<std::size_t>(g.columns) * static_cast<std::size_t>(g.rows);
   for (std::vector<double>* values : {&g.z, &g.zu, &g.zv, &g.zuv}) values->resize(n);
   bool voids = false;
-  std::visit(
-      [&](const auto& heights) {
-        const auto* from = heights.data() + raster.index(0, first);
-        for (std::size_t i = 0; i < n; ++i) {
-          const auto h = static_cast<double>(from[i]);
-          voids |= std::isnan(h);
-          g.z[i] = std::isnan(h) ? 0 : h;
-        }
-      },
-      raster.heights);
+  std::visit([&](const auto& heights) { voids = take_heights(heights.data() + raster.index(0, first), n, g.z.data()); },
+             raster.heights);
   g.valid = {};
   if (!voids) return;
   g.valid = Mask(g.columns, g.rows, false);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "retalho/core/parallel.h"
 #include "retalho/terrain/tangent_kernels.h"
@@ -130,7 +131,7 @@ void tangents_along_columns(std::span<const double> values, GridShape shape, con
   const auto stride = static_cast<std::ptrdiff_t>(columns);
   const auto blocks = static_cast<std::size_t>((columns + kBlock - 1) / kBlock);
   parallel_chunks(blocks, 1, context, [&](std::size_t from, std::size_t to) {
-    std::vector<double> copy(static_cast<std::size_t>(kBlock * (kRows + 2 * kSplineHalo)));
+    const auto copy = std::make_unique_for_overwrite<double[]>(kBlock * (kRows + 2 * kSplineHalo));
     for (std::size_t b = from; b < to; ++b) {
       const int left = static_cast<int>(b) * kBlock, width = std::min(kBlock, columns - left);
       const double* z = values.data() + left;
@@ -141,10 +142,10 @@ void tangents_along_columns(std::span<const double> values, GridShape shape, con
         const int count = std::min(kRows, deep_last - top);
         for (int r = 0; r < count + 2 * kSplineHalo; ++r) {
           const double* source = z + stride * (top - kSplineHalo + r);
-          std::copy(source, source + width, copy.data() + r * kBlock);
+          std::copy(source, source + width, copy.get() + r * kBlock);
         }
         for (int r = 0; r < count; ++r)
-          inner_tangents(copy.data() + (r + kSplineHalo) * kBlock, kBlock, static_cast<std::size_t>(width),
+          inner_tangents(copy.get() + (r + kSplineHalo) * kBlock, kBlock, static_cast<std::size_t>(width),
                          m + stride * (top + r));
       }
       if (valid.empty() && rows >= kLongRun) {
