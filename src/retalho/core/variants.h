@@ -6,6 +6,8 @@
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define RETALHO_VARIANTS __attribute__((target_clones("avx512f", "avx2", "default")))
+#define RETALHO_TWO_VARIANTS __attribute__((target_clones("avx2", "default")))  // for long functions
 #else
 #define RETALHO_VARIANTS
+#define RETALHO_TWO_VARIANTS
 #endif

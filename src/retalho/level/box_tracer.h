@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "retalho/core/variants.h"
 #include "retalho/level/fixed_levels.h"
 #include "retalho/level/frame.h"
 #include "retalho/level/lanes.h"
@@ -30,14 +31,12 @@ struct Certificate {
 
 /// Nothing when none of the directions tried will do. Decided conservatively in doubles of exact integers.
 template <class Patch, class I>
-bool certify(const typename Patch::template Net<I>& net, const Frame& frame, Certificate& certificate) {
-  std::array<double, Patch::kGradients> du{}, dv{};
+[[gnu::always_inline]] inline bool certify(const typename Patch::template Net<I>& net, const Frame& frame,
+                                           Certificate& certificate) {
+  typename Patch::Slopes du, dv;
   Patch::template gradients<I>(net, du, dv);
-  const auto test = [&](Vec2 d) {
-    double low = 0, least = 0, size = 0, high = 0;
-    range_of<Patch::kGradients>([&](std::size_t i) { return d.x * du[i] + d.y * dv[i]; }, low, high);
-    range_of<Patch::kGradients>([&](std::size_t i) { return std::abs(d.x * du[i]) + std::abs(d.y * dv[i]); }, least,
-                                size);
+  const auto test = [&](Vec2 d) __attribute__((always_inline)) {
+    const auto [low, high, size] = range_of_sums(d.x, du, d.y, dv);
     if (!(low > 4e-15 * size)) return false;
     certificate = {d, Patch::kDegree * (low - 4e-15 * size)};
     return true;
@@ -59,9 +58,9 @@ class BoxTracer {
       : levels_(levels), tolerance_(tolerance), mirrored_(mirrored), trace_(trace) {}
 
   /// Traces a patch whose sides have these roots.
-  void trace_patch(typename Patch::template Net<double> net, const Frame& frame,
-                   const std::array<std::span<const EdgeRoot>, Patch::kSides>& sides,
-                   const std::array<bool, Patch::kSides>& reversed) {
+  RETALHO_TWO_VARIANTS void trace_patch(typename Patch::template Net<double> net, const Frame& frame,
+                                        const std::array<std::span<const EdgeRoot>, Patch::kSides>& sides,
+                                        const std::array<bool, Patch::kSides>& reversed) {
     pool_.clear();
     std::array<Side, Patch::kSides> own{};
     for (std::size_t s = 0; s < Patch::kSides; ++s) {
@@ -70,12 +69,13 @@ class BoxTracer {
       own[s].end = static_cast<std::uint32_t>(pool_.size());
     }
     // Counted from the middle of the patch's own range, ordinates have few bits, and more halvings fit into a double.
-    const auto [low, high] = std::minmax_element(net.begin(), net.end());
-    const double middle = 2 * std::floor(0.25 * (*low + *high)), reach = std::max(*high - middle, middle - *low);
+    double low = 0, high = 0;
+    range_of(net, low, high);
+    const double middle = 2 * std::floor(0.25 * (low + high)), reach = std::max(high - middle, middle - low);
     base_ = static_cast<std::int64_t>(middle);
     for (double& b : net) b -= middle;
     const Box<double> box{net, frame, 0, 1, 1, reach > 0 ? std::ilogb(reach) + 1 : 1};
-    trace_.pairs += visit(box, 0, levels_.count(), own);
+    trace_.pairs += visit(box, low - middle, high - middle, 0, levels_.count(), own);
   }
 
  private:
@@ -95,13 +95,17 @@ class BoxTracer {
   };
   using Sides = std::array<Side, Patch::kSides>;
 
-  /// Returns how many levels cross the box.
   template <class I>
-  std::size_t visit(const Box<I>& box, int from, int to, const Sides& sides) {
+  [[gnu::always_inline]] void visit(const Box<I>& box, int from, int to, const Sides& sides) {
+    I low{}, high{};
+    range_of(box.net, low, high);
+    visit(box, low, high, from, to, sides);
+  }
+  /// Traces a box whose ordinates have this range; returns how many levels cross it.
+  template <class I>
+  RETALHO_TWO_VARIANTS std::size_t visit(const Box<I>& box, I low, I high, int from, int to, const Sides& sides) {
     ++trace_.boxes;
     trace_.depth = std::max(trace_.depth, box.depth);
-    I low{}, high{};
-    range_of<static_cast<std::size_t>(Patch::kOrdinates)>([&](std::size_t i) { return box.net[i]; }, low, high);
     narrow<I>(low, high, box.scale, box.per_scale, from, to);
     if (from >= to) return 0;
     const auto pairs = static_cast<std::size_t>(to - from);
@@ -198,7 +202,7 @@ class BoxTracer {
   /// The arc between the two roots in found_, cut until every chord is within the tolerance. False: halve the box
   /// first.
   template <class I>
-  bool arc(const Box<I>& box, int level, const Certificate& certificate) {
+  RETALHO_TWO_VARIANTS bool arc(const Box<I>& box, int level, const Certificate& certificate) {
     const bool forward = first_above(box, level) != mirrored_;
     const std::uint32_t start = found_[forward ? 0 : 1], end = found_[forward ? 1 : 0];
     if constexpr (Patch::kDegree == 1) {
@@ -239,7 +243,7 @@ class BoxTracer {
   };
 
   /// A lower bound of the growth along d between a chord and its arc, from the gradient in the middle.
-  double local_growth(const Certificate& c, Vec2 p, Vec2 q, double bound) const {
+  [[gnu::always_inline]] double local_growth(const Certificate& c, Vec2 p, Vec2 q, double bound) const {
     double f = 0;
     Vec2 derivatives;
     Patch::evaluate(net_, 0.5 * (p + q), f, derivatives);
@@ -255,7 +259,7 @@ class BoxTracer {
     return std::max(c.m, root >= 0 ? 0.5 * (base + std::sqrt(root)) * (1 - 1e-12) : 0);
   }
 
-  void refine(const Frame& frame, Work& work, Vec2 p, Vec2 q, int depth) {
+  RETALHO_TWO_VARIANTS void refine(const Frame& frame, Work& work, Vec2 p, Vec2 q, int depth) {
     const Certificate& c = work.certificate;
     const double need = second_.chord_bound(q - p);
     double allowed = std::min(tolerance_ * c.m, work.tube);
@@ -315,7 +319,7 @@ class BoxTracer {
   }
 
   /// The point of the line on start + s d, sought inside the box only.
-  Vec2 on_line(const Work& work, Vec2 start, double growth) const {
+  [[gnu::always_inline]] Vec2 on_line(const Work& work, Vec2 start, double growth) const {
     const Vec2 d = work.certificate.d;
     double f = 0;
     Vec2 derivatives;
@@ -338,7 +342,7 @@ class BoxTracer {
   }
 
   template <class I>
-  void split(const Box<I>& box, int from, int to, const Sides& sides) {
+  RETALHO_TWO_VARIANTS void split(const Box<I>& box, int from, int to, const Sides& sides) {
     if constexpr (!std::is_void_v<typename Exact<I>::Wider>) {
       if (box.bits + Patch::kBitsADepth > Exact<I>::kBits) {
         using Wider = typename Exact<I>::Wider;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "retalho/core/parallel.h"
+#include "retalho/core/variants.h"
 #include "retalho/level/fixed_pieces.h"
 #include "retalho/level/line_thinner.h"
 
@@ -17,7 +18,7 @@ class GridSurface {
  public:
   explicit GridSurface(const FixedGrid& grid) : grid_(grid) {}
 
-  bool across(const Strip& strip, std::uint32_t, double& steepest) {
+  RETALHO_TWO_VARIANTS bool across(const Strip& strip, std::uint32_t, double& steepest) {
     // In cells, y to the south.
     const double w = grid_.cell_width, h = grid_.cell_height;
     const Vec2 end = strip.start + strip.length * strip.along;
@@ -61,7 +62,7 @@ class GridSurface {
     PatchSlopes<RectanglePatch> slopes;
   };
   /// Of the patches seen last, by a few bits of their place: a line's chords ask for the same ones again and again.
-  const Seen& slopes(int column, int row, const Frame& frame) {
+  [[gnu::always_inline]] const Seen& slopes(int column, int row, const Frame& frame) {
     const std::size_t node = grid_.node(column, row);
     Seen& seen = seen_[(static_cast<std::size_t>(row) % 16) * 16 + static_cast<std::size_t>(column) % 16];
     if (seen.node != node) {

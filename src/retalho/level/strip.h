@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 
+#include "retalho/core/variants.h"
 #include "retalho/core/vec.h"
 #include "retalho/level/frame.h"
 #include "retalho/level/lanes.h"
@@ -48,16 +49,17 @@ auto frame_corners(const Frame& f) {
 template <class Patch>
 struct PatchSlopes {
   typename Patch::template Net<double> net;
-  std::array<double, static_cast<std::size_t>(Patch::kGradients)> du, dv;
+  typename Patch::Slopes du, dv;
   double largest_u = 0, largest_v = 0;  ///< magnitudes
 
   PatchSlopes() = default;
-  explicit PatchSlopes(const typename Patch::template Net<double>& ordinates) : net(ordinates) {
+  [[gnu::always_inline]] explicit PatchSlopes(const typename Patch::template Net<double>& ordinates) : net(ordinates) {
     Patch::template gradients<double>(net, du, dv);
-    for (std::size_t i = 0; i < du.size(); ++i) {
-      largest_u = std::max(largest_u, std::abs(du[i]));
-      largest_v = std::max(largest_v, std::abs(dv[i]));
-    }
+    double low = 0, high = 0;
+    range_of(du, low, high);
+    largest_u = std::max(-low, high);
+    range_of(dv, low, high);
+    largest_v = std::max(-low, high);
   }
 };
 
@@ -70,33 +72,39 @@ struct SlopeSector {
 
   SlopeSector() = default;
   template <class Patch>
-  SlopeSector(const PatchSlopes<Patch>& slopes, const Frame& frame) {
-    std::array<Vec2, static_cast<std::size_t>(Patch::kGradients)> g{};
+  [[gnu::always_inline]] SlopeSector(const PatchSlopes<Patch>& slopes, const Frame& frame) {
+    constexpr auto kCount = static_cast<std::size_t>(Patch::kGradients);
+    // Local gradients, four at a time; what fills the last four up is one of them again.
+    typename Patch::Slopes x, y, place, size;
+    const double det = cross(frame.e1, frame.e2);
+    for (std::size_t i = 0; i < x.size(); i += 4) {
+      const Four u = *fours(&slopes.du[i]), v = *fours(&slopes.dv[i]);
+      *reinterpret_cast<Four*>(&x[i]) = (u * frame.e2.y - v * frame.e1.y) / det;
+      *reinterpret_cast<Four*>(&y[i]) = (v * frame.e1.x - u * frame.e2.x) / det;
+    }
     Vec2 sum;
-    for (std::size_t i = 0; i < g.size(); ++i) {
-      g[i] = frame.gradient({slopes.du[i], slopes.dv[i]});
-      sum = sum + g[i];
+    for (std::size_t i = 0; i < kCount; ++i) sum = sum + Vec2{x[i], y[i]};
+    for (std::size_t i = 0; i < x.size(); i += 4) {
+      const Four u = *fours(&x[i]), v = *fours(&y[i]);
+      const Four ahead = sum.x * u + sum.y * v, aside = sum.x * v - sum.y * u;
+      if (!(least_of(ahead) > 0)) return;
+      *reinterpret_cast<Four*>(&place[i]) = aside / ahead;
+      *reinterpret_cast<Four*>(&size[i]) = u * u + v * v;
     }
-    double low = 1e300, high = -1e300, shortest = 1e300, most = 0;
     std::size_t at_low = 0, at_high = 0;
-    for (std::size_t i = 0; i < g.size(); ++i) {
-      const double ahead = dot(sum, g[i]), aside = cross(sum, g[i]);
-      if (!(ahead > 0)) return;
-      const double place = aside / ahead, size = norm2(g[i]);
-      if (place < low) {
-        low = place;
-        at_low = i;
-      }
-      if (place > high) {
-        high = place;
-        at_high = i;
-      }
-      shortest = std::min(shortest, size);
-      most = std::max(most, size);
+    for (std::size_t i = 1; i < kCount; ++i) {
+      if (place[i] < place[at_low]) at_low = i;
+      if (place[i] > place[at_high]) at_high = i;
     }
+    double shortest = 0, most = 0;
+    range_of(size, shortest, most);
     if (!(shortest > 0) || !std::isfinite(most)) return;
-    first = g[at_low] / norm(g[at_low]);
-    last = g[at_high] / norm(g[at_high]);
+    const auto unit = [&](std::size_t i) {
+      const Vec2 g{x[i], y[i]};
+      return g / norm(g);
+    };
+    first = unit(at_low);
+    last = unit(at_high);
     least = std::sqrt(shortest / most);
     longest = std::sqrt(most) * Patch::kDegree;
   }
@@ -110,12 +118,10 @@ struct SlopeSector {
 /// Does the polynomial grow along the strip's left everywhere in the part of the patch that the strip may touch?
 /// `steepest`: raised to the largest growth, in ordinates a local unit. The patch is halved `depth` times at most.
 template <class Patch>
-bool grows_across(const PatchSlopes<Patch>& patch, const Frame& frame, const Strip& strip, int depth, double scale,
-                  double& steepest) {
+RETALHO_TWO_VARIANTS bool grows_across(const PatchSlopes<Patch>& patch, const Frame& frame, const Strip& strip,
+                                       int depth, double scale, double& steepest) {
   const Vec2 d = frame.direction(strip.left());
-  double low = 0, high = 0;
-  range_of<static_cast<std::size_t>(Patch::kGradients)>(
-      [&](std::size_t i) { return d.x * patch.du[i] + d.y * patch.dv[i]; }, low, high);
+  const auto [low, high, size] = range_of_sums(d.x, patch.du, d.y, patch.dv);
   if (low > 1e-12 * (std::abs(d.x) * patch.largest_u + std::abs(d.y) * patch.largest_v)) {
     steepest = std::max(steepest, Patch::kDegree * high / scale);
     return true;

@@ -9,6 +9,7 @@
 #include "retalho/bernstein/triangle.h"
 #include "retalho/level/exact_roots.h"
 #include "retalho/level/frame.h"
+#include "retalho/level/lanes.h"
 #include "retalho/level/patch_parts.h"
 
 namespace retalho {
@@ -23,6 +24,7 @@ struct TrianglePatch {
   static constexpr int kBitsADepth = N;
   template <class I>
   using Net = std::array<I, static_cast<std::size_t>(kOrdinates)>;
+  using Slopes = Fours<static_cast<std::size_t>(kGradients)>;
 
   static constexpr std::array<bool, kSides> kAgainst{false, false, false};
   /// Children: at A, at B, at C (each with its corners in the same places), and the middle one (AB, BC, CA).
@@ -81,16 +83,19 @@ struct TrianglePatch {
           children[c][at(i, j)] = blossom<I>(b, arguments);
         }
   }
-  /// Ordinates of both partial derivatives, divided by N.
+  /// Ordinates of both partial derivatives, divided by N; the last ones fill up.
   template <class I>
-  static void gradients(const Net<I>& b, std::array<double, static_cast<std::size_t>(kGradients)>& du,
-                        std::array<double, static_cast<std::size_t>(kGradients)>& dv) {
+  [[gnu::always_inline]] static void gradients(const Net<I>& b, Slopes& du, Slopes& dv) {
     for (int i = N - 1; i >= 0; --i)
       for (int j = N - 1 - i; j >= 0; --j) {
         const auto g = static_cast<std::size_t>(ordinate_index(N - 1, i, j));
         du[g] = static_cast<double>(b[at(i + 1, j)] - b[at(i, j)]);
         dv[g] = static_cast<double>(b[at(i, j + 1)] - b[at(i, j)]);
       }
+    for (std::size_t g = kGradients; g < du.size(); ++g) {
+      du[g] = du[kGradients - 1];
+      dv[g] = dv[kGradients - 1];
+    }
   }
   template <class I>
   static SecondRanges second(const Net<I>& b) {
