@@ -57,7 +57,7 @@ TracedSurface load_surface(const Program& program, const SurfaceChoice& options,
   if (model) {
     if (!options.kind.empty())
       throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
-    if (!options.whole && is_tiled_model(options.input)) {
+    if (!options.joined && is_tiled_model(options.input)) {
       open_tiles(surface, options, context);
       return surface;
     }

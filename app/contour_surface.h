@@ -18,7 +18,8 @@ namespace retalho::app {
 struct SurfaceChoice {
   std::string input, kind, twist = "spline", ends = "not-a-knot";
   bool ring = false;
-  bool whole = false;  ///< the surface will be made whole: for bands, conics and map sheets
+  bool whole = false;   ///< a grid's surface will be made whole: for bands, conics and map sheets
+  bool joined = false;  ///< and the tiles of a tiled model will be joined: for conics and map sheets
   GridFlags grid;
   PointOptions points;
   BreaklineFlags breaklines;

@@ -11,6 +11,7 @@
 #include "checks.h"
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
+#include "retalho/model/tiled.h"
 
 namespace retalho::app {
 namespace {
@@ -82,7 +83,13 @@ Model load_any_model(const std::string& path, ModelFileNotes* notes) {
   note_input(path);
   if (std::filesystem::exists(path) && !is_model_file(path))
     throw CannotRead(fmt::format("'{}' is not a model file of retalho: make one with `retalho fit`", path), path);
-  check_file_need("reading the model", kModelFile, path);
+  if (is_tiled_model(path)) {
+    std::size_t vertices = 0;
+    for (const TileEntry& entry : read_tiled_index(path).tiles) vertices += entry.vertices;
+    check_vertex_need("joining the tiles of", vertices, kVertexLoaded, 0, path);
+  } else {
+    check_file_need("reading the model", kModelFile, path);
+  }
   return load_model(path, notes);
 }
 

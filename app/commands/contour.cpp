@@ -151,7 +151,8 @@ void run(const Program& program, const Options& options) {
   const bool sheet = is_sheet(options.output);
   SurfaceChoice choice = options.surface;
   // Lines alone leave as they are traced; sheets and bands want the whole surface.
-  choice.whole = sheet || options.bands || options.conics;
+  choice.joined = sheet || options.conics;
+  choice.whole = choice.joined || options.bands;
   TracedSurface surface = load_surface(program, choice, context);
   if (options.conics) {
     if (!surface.terrain)
@@ -174,7 +175,7 @@ void run(const Program& program, const Options& options) {
   const std::vector<double> levels = levels_of(options, surface);
   MapSheet map;
   const Georef georef = surface.georef();
-  const bool stream = surface.tiles || (surface.raster && !choice.whole);
+  const bool stream = !choice.whole && (surface.tiles || surface.raster);
   std::optional<BicubicGrid> bicubic;
   if (surface.raster && !stream) {
     bicubic = make_bicubic(*surface.raster, surface.bicubic, context);
@@ -211,8 +212,9 @@ void run(const Program& program, const Options& options) {
                                             &extras.stats);
     });
   } else {
-    set = bicubic ? trace_contours(std::move(*bicubic), levels, contour, context, &extras)
-                  : trace_contours(*surface.terrain, levels, contour, context, &extras);
+    set = surface.tiles ? trace_contours(*surface.tiles, surface.range, levels, contour, context, &extras)
+          : bicubic     ? trace_contours(std::move(*bicubic), levels, contour, context, &extras)
+                        : trace_contours(*surface.terrain, levels, contour, context, &extras);
     context.check();
     tally.add(set);
     if (sheet) {

@@ -83,7 +83,7 @@ void run(const Program& program, const Options& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0)
     throw UsageError("--tolerance must be 0 or more", {}, "--tolerance");
   if (is_globe_name(options.output))
-    return mesh_globe(program, options.globe, options.model, options.output, options.tolerance);
+    return mesh_globe(program, options.globe, options.model, options.tile_memory, options.output, options.tolerance);
   if (options.globe.given())
     throw UsageError(
         "--level, --outside, --no-normals, --no-gzip and --tile-triangles go with -o DIR/layer.json or "

@@ -8,6 +8,8 @@
 #include "retalho/core/error.h"
 #include "retalho/mesh/globe_mesh.h"
 #include "retalho/mesh/terrain_mesh.h"
+#include "retalho/model/tiled.h"
+#include "retalho/tiles/source.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -19,18 +21,21 @@ std::string name_of(const std::string& output) {
   return std::filesystem::path(output).filename().string();
 }
 
-GlobeNotes write(const Program& program, const GlobeFlags& flags, const Terrain& terrain, const std::string& output,
-                 double tolerance, const Context& context) {
-  std::string folder = std::filesystem::path(output).parent_path().string();
-  if (folder.empty()) folder = ".";
-  if (name_of(output) == kTileset) {
-    if (flags.level != -1 || flags.outside != 0 || flags.no_normals || flags.no_gzip)
-      throw UsageError("--level, --outside, --no-normals and --no-gzip are of quantized-mesh (-o DIR/layer.json)");
-    TilesetOptions options;
-    options.tolerance = tolerance;
-    if (flags.tile_triangles != 0) options.triangles = flags.tile_triangles;
-    return write_tileset(terrain, folder, options, program.overwrite, context);
-  }
+std::string folder_of(const std::string& output) {
+  const std::string folder = std::filesystem::path(output).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+TilesetOptions tileset_options(const GlobeFlags& flags, double tolerance) {
+  if (flags.level != -1 || flags.outside != 0 || flags.no_normals || flags.no_gzip)
+    throw UsageError("--level, --outside, --no-normals and --no-gzip are of quantized-mesh (-o DIR/layer.json)");
+  TilesetOptions options;
+  options.tolerance = tolerance;
+  if (flags.tile_triangles != 0) options.triangles = flags.tile_triangles;
+  return options;
+}
+
+QuantizedMeshOptions quantized_options(const GlobeFlags& flags, double tolerance) {
   if (flags.tile_triangles != 0)
     throw UsageError("--tile-triangles is of 3D Tiles (-o DIR/tileset.json)", {}, "--tile-triangles");
   if (flags.level < -1) throw UsageError("--level must be 0 or more", {}, "--level");
@@ -40,7 +45,32 @@ GlobeNotes write(const Program& program, const GlobeFlags& flags, const Terrain&
   options.outside = flags.outside;
   options.normals = !flags.no_normals;
   options.gzip = !flags.no_gzip;
-  return write_quantized_mesh(TerrainEvaluator(terrain, context), folder, options, program.overwrite, context);
+  return options;
+}
+
+GlobeNotes write_whole(const Program& program, const GlobeFlags& flags, const std::string& model,
+                       const std::string& output, double& tolerance, const Context& context) {
+  const Terrain terrain = load_terrain(model);
+  check_terrain_need("meshing", terrain, kVertexMeshed, 0, model);
+  tolerance = mesh_tolerance(terrain, {.tolerance = tolerance});
+  if (name_of(output) == kTileset)
+    return write_tileset(terrain, folder_of(output), tileset_options(flags, tolerance), program.overwrite, context);
+  return write_quantized_mesh(TerrainEvaluator(terrain, context), folder_of(output),
+                              quantized_options(flags, tolerance), program.overwrite, context);
+}
+
+/// A tiled model, sampled or meshed tile by tile.
+GlobeNotes write_tiles(const Program& program, const GlobeFlags& flags, const std::string& model,
+                       std::size_t tile_memory, const std::string& output, double& tolerance, const Context& context) {
+  const VertexBox box = vertex_box(tile_source(model, tile_memory), context);
+  if (!box.data) throw CannotRead(fmt::format("no tile of '{}' holds any data", model), model);
+  tolerance = mesh_tolerance(box.low.z, box.high.z, {.tolerance = tolerance});
+  if (name_of(output) == kTileset)
+    return write_tileset(tile_source(model, tile_memory), folder_of(output), tileset_options(flags, tolerance),
+                         program.overwrite, context);
+  TileReader reader(model, tile_memory);
+  return write_quantized_mesh(globe_surface(reader, box), folder_of(output), quantized_options(flags, tolerance),
+                              program.overwrite, context);
 }
 
 }  // namespace
@@ -63,15 +93,15 @@ bool is_globe_name(const std::string& output) {
   return name_of(output) == kLayer || name_of(output) == kTileset;
 }
 
-void mesh_globe(const Program& program, const GlobeFlags& flags, const std::string& model, const std::string& output,
-                double tolerance) {
+void mesh_globe(const Program& program, const GlobeFlags& flags, const std::string& model,
+                const TileMemoryFlag& tile_memory, const std::string& output, double tolerance) {
   if (std::filesystem::exists(output) && !program.overwrite)
     throw CannotWrite(fmt::format("'{}' exists: give another folder, or --overwrite", output), output);
   const Context context = program.context();
-  const Terrain terrain = load_terrain(model);
-  tolerance = mesh_tolerance(terrain, {.tolerance = tolerance});
   program.say("heights are taken as they are; globes mean heights over the ellipsoid");
-  const GlobeNotes notes = write(program, flags, terrain, output, tolerance, context);
+  const bool tiles = is_tiled_model(model);
+  const GlobeNotes notes = tiles ? write_tiles(program, flags, model, tile_memory.bytes(), output, tolerance, context)
+                                 : write_whole(program, flags, model, output, tolerance, context);
   nlohmann::ordered_json json = {{"tiles", notes.tiles},
                                  {"levels", notes.levels},
                                  {"triangles", notes.triangles},

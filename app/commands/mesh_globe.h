@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "inputs.h"
 #include "program.h"
 
 namespace retalho::app {
@@ -20,7 +21,8 @@ void add_globe_flags(CLI::App& command, GlobeFlags& flags);
 /// Is the output's name layer.json or tileset.json?
 bool is_globe_name(const std::string& output);
 
-void mesh_globe(const Program& program, const GlobeFlags& flags, const std::string& model, const std::string& output,
-                double tolerance);
+/// A tiled model is sampled, or meshed, tile by tile.
+void mesh_globe(const Program& program, const GlobeFlags& flags, const std::string& model,
+                const TileMemoryFlag& tile_memory, const std::string& output, double tolerance);
 
 }  // namespace retalho::app

@@ -16,6 +16,7 @@
 #include "retalho/model/model.h"
 #include "retalho/render/compose.h"
 #include "retalho/render/perspective.h"
+#include "retalho/tiles/source.h"
 
 namespace retalho::app {
 namespace {
@@ -35,6 +36,7 @@ struct Options {
   GridFlags grid;
   TetraQuadFlags tetraquad;
   std::string style = "lines";
+  TileMemoryFlag tile_memory;
 };
 
 /// One of the inputs: a grid or a model, ready to be drawn. Not to be moved: the source refers to it.
@@ -42,17 +44,39 @@ struct Shape {
   std::optional<Raster> raster;
   std::optional<Terrain> terrain;
   std::optional<TerrainEvaluator> evaluator;
+  std::optional<TileReader> tiles;
+  VertexBox box;  // of the tiles
   FieldSource source;
   std::vector<std::string> caption;
 
-  const Georef& georef() const { return raster ? raster->georef : terrain->georef; }
-  Extent extent() const { return raster ? extent_of(*raster) : extent_of(*terrain); }
+  const Georef& georef() const { return raster ? raster->georef : tiles ? tiles->index().georef : terrain->georef; }
+  Extent extent() const {
+    if (tiles) return {{box.low.x, box.low.y}, {box.high.x, box.high.y}};
+    return raster ? extent_of(*raster) : extent_of(*terrain);
+  }
 };
 
-std::unique_ptr<Shape> load_shape(const Program& program, const std::string& path, const GridFlags& flags,
+/// A tiled model: windows of it are sampled tile by tile.
+void open_tiles(Shape& shape, const Options& options, const std::string& path, const std::string& name,
+                const Context& context) {
+  shape.tiles.emplace(path, options.tile_memory.bytes());
+  shape.box = vertex_box(tile_source(path, options.tile_memory.bytes()), context);
+  if (!shape.box.data) throw CannotRead(fmt::format("no tile of '{}' holds any data", path), path);
+  shape.source = field_of(*shape.tiles);
+  const TiledIndex& index = shape.tiles->index();
+  shape.caption = {name, fmt::format("{}, {} x {} cells in {} tiles", surface_name(index.surface), index.columns,
+                                     index.rows, index.tiles.size())};
+}
+
+std::unique_ptr<Shape> load_shape(const Program& program, const Options& options, const std::string& path,
                                   const Context& context) {
   auto shape = std::make_unique<Shape>();
-  const std::string name = std::filesystem::path(path).filename().string();
+  std::string name = std::filesystem::path(path).filename().string();
+  if (is_tiled_model(path)) {
+    if (name.empty()) name = std::filesystem::path(path).parent_path().filename().string();
+    open_tiles(*shape, options, path, name, context);
+    return shape;
+  }
   if (is_model_file(path) || std::filesystem::path(path).extension() == ".retalho") {
     shape->terrain = load_terrain(path);
     check_terrain_need("drawing", *shape->terrain, kVertexLoaded, 0, path);
@@ -63,7 +87,7 @@ std::unique_ptr<Shape> load_shape(const Program& program, const std::string& pat
     return shape;
   }
   RasterSummary summary;
-  shape->raster = load_grid(program, path, flags, summary, context);
+  shape->raster = load_grid(program, path, options.grid, summary, context);
   if (summary.valid == 0) throw BadInput(fmt::format("'{}' has no valid cell to draw", path), path);
   shape->source = field_of(*shape->raster);
   shape->caption = {name, fmt::format("grid, {} x {} cells", shape->raster->columns, shape->raster->rows)};
@@ -147,7 +171,7 @@ Image draw(const Options& options, const Scene& scene, const Layout& layout, con
 }
 
 bool holds_panels(const std::string& path) {
-  if (!is_model_file(path)) return false;
+  if (!is_model_file(path) || is_tiled_model(path)) return false;
   return !std::holds_alternative<Terrain>(load_model(path));
 }
 
@@ -212,10 +236,10 @@ void run(const Program& program, const Options& options) {
   if (holds_panels(options.inputs.front())) return run_in_space(program, options);
   const Context context = program.context();
   std::vector<std::unique_ptr<Shape>> shapes;
-  for (const std::string& path : options.inputs) shapes.push_back(load_shape(program, path, options.grid, context));
+  for (const std::string& path : options.inputs) shapes.push_back(load_shape(program, options, path, context));
   const Scene scene = make_scene(program, options, relief, shapes, context);
   const std::unique_ptr<Shape> truth =
-      options.error.empty() ? nullptr : load_shape(program, options.error, options.grid, context);
+      options.error.empty() ? nullptr : load_shape(program, options, options.error, context);
   double largest = 0;
   if (truth) {
     check_same_crs(scene.georef, options.inputs[0], truth->georef(), options.error);
@@ -256,7 +280,9 @@ void add_render(CLI::App& root, Program& program) {
                                   "retalho render dem.retalho -o block.png --view perspective --size 1600x1000\n"
                                   "retalho render flat.retalho smooth.retalho -o errors.png --error dem.tif\n"
                                   "retalho render scan.retalho -o scan.png --up y --from 30 --cut 'x<0.2'");
-  command->add_option("FILE", options->inputs, "Models (.retalho) and elevation grids")->required()->type_name("");
+  command->add_option("FILE", options->inputs, "Models (.retalho; tiled: the folder) and elevation grids")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", options->output, "The picture, ending in .png")->required()->type_name("FILE");
   command->add_option("--size", options->size, "Of the whole picture, pixels")->type_name("WxH");
   command->add_option("--view", options->view, "plan (default) or perspective")->type_name("KIND");
@@ -273,6 +299,7 @@ void add_render(CLI::App& root, Program& program) {
       ->type_name("ALT");
   command->add_flag("!--no-captions", options->captions, "No words under the pictures");
   add_grid_flags(*command, options->grid);
+  add_tile_memory_flag(*command, options->tile_memory);
   command->add_option("--style", options->style, "Patches: shaded, lines (default), isophotes, zebra, gaussian, mean")
       ->type_name("KIND");
   add_tetraquad_flags(*command, options->tetraquad);

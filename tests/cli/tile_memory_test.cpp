@@ -56,6 +56,7 @@ TEST(TileMemory, DoesNotGrowWithTheNumberOfTiles) {
   }
   for (const char* command : {"contour {0} -o {0}.gpkg --interval 50 --threads 1 --tile-memory 1",
                               "mesh {0} -o {0}.ply --tolerance 1 --threads 1 --tile-memory 1",
+                              "render {0} -o {0}.png --size 400x400 --threads 1 --tile-memory 1",
                               "viewshed {0} -o {0}v.tif --observer 300,-300 --radius 200 --tile-memory 1",
                               "viewshed {0} -o {0}x.tif --exact --observer 300,-300 --radius 200"}) {
     const double few = peak_megabytes(folder, fmt::format(fmt::runtime(command), "few")),
@@ -64,9 +65,14 @@ TEST(TileMemory, DoesNotGrowWithTheNumberOfTiles) {
     RecordProperty(command, fmt::format("{:.0f} MB, {:.0f} MB", few, many));
   }
   // What joining takes: the test would see it.
-  const double joined = peak_megabytes(folder, "contour many -o b.gpkg --interval 50 --bands --threads 1"),
+  const double joined = peak_megabytes(folder, "contour many -o b.svg --interval 50 --threads 1"),
                streamed = peak_megabytes(folder, "contour many -o s.gpkg --interval 50 --threads 1 --tile-memory 1");
   EXPECT_GT(joined, 1.6 * streamed) << joined << " MB joined, " << streamed << " MB streamed";
+  // Bands hold lines alone.
+  const double bands = peak_megabytes(folder,
+                                      "contour many -o b.gpkg --interval 50 --bands --threads 1 "
+                                      "--tile-memory 1");
+  EXPECT_LT(bands, 1.5 * streamed) << bands << " MB with bands, " << streamed << " MB lines alone";
 }
 
 }  // namespace

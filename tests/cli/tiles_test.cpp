@@ -80,7 +80,7 @@ TEST(FitTiles, LinesAndMeshesAreTheSameBytesFromAnyNumberOfThreadsAndAnyBound) {
   EXPECT_EQ(run(folder, "mesh m -o l.ply --tile-memory 0").code, 2);
   EXPECT_EQ(run(folder, "viewshed m -o l.tif --observer 1505,2305 --tile-memory 0").code, 2);
   EXPECT_EQ(run(folder, "contour m -o l.gpkg --interval 20 --surface linear").code, 2);
-  // What wants the whole surface joins it.
+  // Bands hold the lines, and sheets join the model.
   for (const char* options : {"-o b.gpkg --bands", "-o m.svg", "-o m.pdf --bands --curves"})
     EXPECT_EQ(run(folder, std::string("contour m --interval 20 ") + options).code, 0) << options;
   EXPECT_EQ(run(folder, "contour m -o c.json --interval 20 --conics").code, 3) << "not a Powell-Sabin model";

@@ -85,6 +85,74 @@ TEST_P(TileLines, AreThoseOfTheJoinedModelToTheBit) {
   EXPECT_GT(closed, 5U);
 }
 
+/// Band, then the rings from their smallest points on, the outer one first.
+using Region = std::pair<int, std::vector<std::vector<std::pair<double, double>>>>;
+
+std::vector<Region> sorted_regions(const BandSet& bands) {
+  const auto ring = [](const BandRing& r) {
+    std::vector<std::pair<double, double>> points;
+    for (const Vec2 p : r.points) points.emplace_back(p.x, p.y);
+    std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
+    return points;
+  };
+  std::vector<Region> regions;
+  for (const BandPolygon& polygon : bands.polygons) {
+    Region region{polygon.band, {}};
+    for (const BandRing& hole : polygon.holes) region.second.push_back(ring(hole));
+    std::sort(region.second.begin(), region.second.end());
+    region.second.insert(region.second.begin(), ring(polygon.outer));
+    regions.push_back(std::move(region));
+  }
+  std::sort(regions.begin(), regions.end());
+  return regions;
+}
+
+TEST_P(TileLines, BandsAreThoseOfTheJoinedModelToTheBit) {
+  const auto [voids, surface, fitted] = GetParam();
+  const MadeTiles made(voids, surface, 1.5, fitted);
+  make_tiles(made.plan, made.tiles, 2, false);
+  const auto whole = std::get<Terrain>(load_model(made.tiles));
+  const ContourOptions options{.tolerance = 0.3, .simplify = false};
+  ContourExtras wanted, got;
+  wanted.want_bands = got.want_bands = true;
+  const ContourSet expected = trace_contours(whole, kLevels, options, {}, &wanted);
+  const TileSource tiles = tile_source(made.tiles);
+  const SurfaceRange range = measure_range(tiles);
+  const ContourSet lines = trace_contours(tiles, range, kLevels, options, {}, &got);
+  EXPECT_TRUE(sorted_lines(lines) == sorted_lines(expected));
+  const std::vector<Region> want = sorted_regions(wanted.bands), have = sorted_regions(got.bands);
+  EXPECT_EQ(got.bands.levels, kLevels);
+  EXPECT_GT(want.size(), 40U);
+  ASSERT_EQ(have.size(), want.size());
+  for (std::size_t k = 0; k < want.size(); ++k)
+    ASSERT_TRUE(have[k] == want[k]) << "region " << k << " of band " << want[k].first;
+  // Thinned, they still cover the valid area once.
+  const auto area = [](const BandSet& bands) {
+    double sum = 0;
+    const auto doubled = [](const BandRing& r) {
+      double a = 0;
+      for (std::size_t i = 0; i < r.points.size(); ++i) a += cross(r.points[i], r.points[(i + 1) % r.points.size()]);
+      return a;
+    };
+    for (const BandPolygon& polygon : bands.polygons) {
+      sum += doubled(polygon.outer);
+      for (const BandRing& hole : polygon.holes) sum += doubled(hole);
+    }
+    return sum / 2;
+  };
+  for (const int threads : {1, 2, 7}) {
+    ContourExtras thinned;
+    thinned.want_bands = true;
+    trace_contours(tile_source(made.tiles, threads == 2 ? 1 : TileReader::kBound), range, kLevels, {.tolerance = 1},
+                   {.threads = threads}, &thinned);
+    EXPECT_NEAR(area(thinned.bands), area(wanted.bands), 1e-9 * area(wanted.bands));
+    if (threads == 1)
+      got = std::move(thinned);
+    else
+      EXPECT_TRUE(sorted_regions(thinned.bands) == sorted_regions(got.bands));
+  }
+}
+
 TEST_P(TileLines, AreThinnedWithinTheToleranceAndDoNotCross) {
   const auto [voids, surface, fitted] = GetParam();
   const MadeTiles made(voids, surface, 1.5, fitted);

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
+#include <iterator>
 #include <tuple>
 #include <vector>
 
@@ -96,6 +99,31 @@ TEST(TileMesh, EveryFormatIsAsFromMemoryAndTheSameFromAnyNumberOfThreads) {
     ++files;
   }
   EXPECT_EQ(files, 8U);
+}
+
+/// The corners of all triangles in a file, in their order.
+std::vector<std::array<Corner, 3>> corners_in(const std::string& path) {
+  const TriangleMesh mesh = read_mesh(path);
+  std::vector<std::array<Corner, 3>> corners;
+  for (const auto& t : mesh.triangles) corners.push_back({corner(mesh, t[0]), corner(mesh, t[1]), corner(mesh, t[2])});
+  return corners;
+}
+
+TEST(TileMesh, ObjAndStlAreTheJoinedModelsAsShapes) {
+  for (const bool voids : {false, true}) {
+    const MadeTiles made(voids);
+    make_tiles(made.plan, made.tiles, 2, false);
+    const TriangleMesh joined = mesh_terrain(std::get<Terrain>(load_model(made.tiles)), {.tolerance = 0.4});
+    const std::string path = (made.folder.path() / "tiles").string(), whole = (made.folder.path() / "whole").string();
+    for (const char* ending : {".obj", ".stl"}) {
+      write_tile_mesh(tile_source(made.tiles), 0.4, path + ending);
+      write_mesh(joined, whole + ending);
+    }
+    // OBJ numbers vertices, and each has an order of its own; STL has none: the same triangles are the same bytes.
+    EXPECT_EQ(corners_in(path + ".obj"), corners_in(whole + ".obj"));
+    EXPECT_GT(corners_in(path + ".obj").size(), 5000U);
+    EXPECT_TRUE(read_file(path + ".stl") == read_file(whole + ".stl"));
+  }
 }
 
 TEST(TileMesh, TilesThatDifferOnTheirSeamAreRefused) {
@@ -203,6 +231,19 @@ TEST(MeshSpool, GivesBackWhatItGot) {
     EXPECT_EQ(stream.position(at).x, at);
   }
   EXPECT_THROW(MeshSpool("/nowhere/at/all", "x"), CannotWrite);
+}
+
+TEST(MeshSpool, LeavesNothingOpenWhereItsSecondFileCannotBeMade) {
+  const test::ScratchFolder folder;
+  const auto open_files = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+  };
+  std::filesystem::create_directory(folder.path() / "m.triangles");
+  const auto before = open_files();
+  for (int k = 0; k < 5; ++k) EXPECT_THROW(MeshSpool(folder / "m", "x"), CannotWrite);
+  EXPECT_EQ(open_files(), before);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "m.vertices"));
 }
 
 }  // namespace

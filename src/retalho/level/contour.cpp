@@ -15,6 +15,7 @@
 #include "retalho/level/strip_lines.h"
 #include "retalho/level/trace_terrain.h"
 #include "retalho/level/void_border.h"
+#include "retalho/terrain/locate.h"
 
 namespace retalho {
 namespace {
@@ -155,7 +156,10 @@ ContourSet trace_contours(const Terrain& terrain, std::vector<double> levels, co
         clip_to_cells(lines.set, lines.ends, static_cast<std::uint32_t>(trace.points.size()), terrain.grid);
     if (want_bands) {
       const BandLocator whole(extras->bands);  // of the whole triangulation
-      extras->bands = build_bands(lines.set, lines.ends, void_border(terrain, outline, trace, cuts, context), &whole);
+      const PointLocator locator(terrain.tin, context);
+      const auto inside = [&](Vec2 p) { return locator.locate(p) != kNone; };
+      extras->bands = build_bands(lines.set, lines.ends,
+                                  void_border(terrain.grid, outline, trace.points, cuts, inside, context), &whole);
     }
     drop_points(lines.set);
   }

@@ -66,23 +66,26 @@ LineChains::Place SeamJoiner::place_of(std::uint32_t point, const std::vector<Se
   return seam.emplace(name, next_place_++).first->second;
 }
 
-void SeamJoiner::add(RawLines& lines, const std::vector<SeamRoot>& roots, int column) {
+void SeamJoiner::add(RawLines& lines, const std::vector<SeamRoot>& roots, int column, const EndName& name_end) {
   column_ = column;
   north_ = std::exchange(south_[static_cast<std::size_t>(column)], {});
   west_ = column == 0 ? Seam{} : std::exchange(east_, {});
   std::size_t kept = 0;
   for (std::size_t l = 0; l < lines.set.lines.size(); ++l) {
     const ContourLine line = lines.set.lines[l];
-    const std::uint32_t name = next_line_++;
+    const std::uint32_t number = next_line_++;
+    const bool named = name_end && !line.closed;
+    const std::uint32_t start = named ? name_end(lines.ends[l][0]) : number,
+                        stop = named ? name_end(lines.ends[l][1]) : number;
     const LineChains::Place head = line.closed ? LineChains::kEnd : place_of(lines.ends[l][0], roots),
                             tail = line.closed ? LineChains::kEnd : place_of(lines.ends[l][1], roots);
     if (head == LineChains::kEnd && tail == LineChains::kEnd) {
       lines.set.lines[kept] = line;
-      lines.ends[kept++] = {name, name};
+      lines.ends[kept++] = {start, stop};
       continue;
     }
     chains_.add(
-        {line.level, head, tail, name, name, std::span(lines.set.points).subspan(line.begin, line.end - line.begin)});
+        {line.level, head, tail, start, stop, std::span(lines.set.points).subspan(line.begin, line.end - line.begin)});
   }
   lines.set.lines.resize(kept);
   lines.ends.resize(kept);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -33,8 +34,10 @@ class SeamJoiner {
  public:
   explicit SeamJoiner(int tile_columns);
   /// Takes the pieces of the next tile, row by row; none of a tile without data. Leaves in `lines` those that go on
-  /// nowhere, whole, by level, then in the order in which they were begun.
-  void add(RawLines& lines, const std::vector<SeamRoot>& roots, int column);
+  /// nowhere, whole, by level, then in the order in which they were begun. `name`: what the ends of open lines are to
+  /// be called, by point of the tile's trace; without it they are called by their lines.
+  using EndName = std::function<std::uint32_t(std::uint32_t point)>;
+  void add(RawLines& lines, const std::vector<SeamRoot>& roots, int column, const EndName& name = {});
 
  private:
   struct Name {

@@ -28,4 +28,10 @@ ContourSet stream_contours(const TileSource& tiles, const SurfaceRange& range, s
                            const ContourOptions& options, const TakeContours& take, const Context& context = {},
                            ContourStats* stats = nullptr);
 
+/// The same, collected, and the bands where they are asked for: those of trace_contours on all tiles as one terrain, to
+/// the bit with options.simplify false. Memory: tiles.at_once tiles; and the lines with the border of the valid area,
+/// 16 bytes a point, with bands about ten times that, and one bit a cell of the whole grid where it has voids.
+ContourSet trace_contours(const TileSource& tiles, const SurfaceRange& range, std::vector<double> levels,
+                          const ContourOptions& options, const Context& context = {}, ContourExtras* extras = nullptr);
+
 }  // namespace retalho

@@ -5,8 +5,6 @@
 #include <optional>
 #include <unordered_map>
 
-#include "retalho/terrain/locate.h"
-
 namespace retalho {
 namespace {
 
@@ -29,7 +27,8 @@ struct SideItem {
 
 class VoidBorder {
  public:
-  VoidBorder(const Terrain& terrain, const Trace& trace) : grid_(terrain.grid), tin_(terrain.tin), trace_(trace) {}
+  VoidBorder(const GridDomain& grid, std::span<const Vec2> root_places, const std::function<bool(Vec2)>& inside)
+      : grid_(grid), root_places_(root_places), inside_(inside) {}
 
   void add_outline(const std::vector<DirectedBorder>& outline) {
     std::unordered_map<std::uint64_t, Vec2> place;
@@ -41,7 +40,6 @@ class VoidBorder {
     for (const LineCut& cut : cuts) items_[key(cut.side)].push_back({SideItem::Kind::cut, cut.root, {0, cut.place}});
   }
   void add_sides(const Context& context) {
-    const PointLocator locator(tin_, context);
     for (int r = -1; r < grid_.rows; ++r) {
       context.check();
       for (int c = -1; c < grid_.columns; ++c) {
@@ -49,9 +47,9 @@ class VoidBorder {
                    south = holds_data({c, r + 1}, grid_);
         // Data to the left of the direction.
         if (here != east)
-          add_side({c, r, true}, here ? Cell{c, r} : Cell{c, r - 1}, here ? Cell{c, r - 1} : Cell{c, r}, locator);
+          add_side({c, r, true}, here ? Cell{c, r} : Cell{c, r - 1}, here ? Cell{c, r - 1} : Cell{c, r});
         if (here != south)
-          add_side({c, r, false}, here ? Cell{c - 1, r} : Cell{c, r}, here ? Cell{c, r} : Cell{c - 1, r}, locator);
+          add_side({c, r, false}, here ? Cell{c - 1, r} : Cell{c, r}, here ? Cell{c, r} : Cell{c - 1, r});
       }
     }
   }
@@ -90,8 +88,8 @@ class VoidBorder {
     };
     Vec2 here = piece.place;
     for (const std::uint32_t root : piece.roots) {
-      walk(here, trace_.points[root]);
-      here = trace_.points[root];
+      walk(here, root_places_[root]);
+      here = root_places_[root];
       if (inside) roots.push_back(root);
     }
     walk(here, to.place);
@@ -99,7 +97,7 @@ class VoidBorder {
   }
 
   /// The stretches of a side on the triangulation.
-  void add_side(const CellSide& side, Cell from, Cell to, const PointLocator& locator) {
+  void add_side(const CellSide& side, Cell from, Cell to) {
     const Node first = corner(from), last = corner(to);
     const auto found = items_.find(key(side));
     std::vector<SideItem> none;
@@ -110,7 +108,7 @@ class VoidBorder {
     const auto crossing = [](const SideItem& item) { return item.kind != SideItem::Kind::cut; };
     const auto first_crossing = std::find_if(items.begin(), items.end(), crossing);
     bool inside = first_crossing != items.end() ? first_crossing->kind == SideItem::Kind::closes
-                                                : locator.locate(0.5 * (first.place + last.place)) != kNone;
+                                                : inside_(0.5 * (first.place + last.place));
     Node start = first;
     std::size_t stretches = 0;
     std::vector<std::uint32_t> roots;  // outside of the triangulation by rounding alone: they wait for where it opens
@@ -147,8 +145,8 @@ class VoidBorder {
   }
 
   const GridDomain& grid_;
-  const Tin& tin_;
-  const Trace& trace_;
+  std::span<const Vec2> root_places_;
+  const std::function<bool(Vec2)>& inside_;
   std::unordered_map<std::uint64_t, std::vector<SideItem>> items_;
   std::vector<DirectedBorder> border_;
   std::uint64_t crossings_ = 0;
@@ -156,9 +154,10 @@ class VoidBorder {
 
 }  // namespace
 
-std::vector<DirectedBorder> void_border(const Terrain& terrain, const std::vector<DirectedBorder>& outline,
-                                        const Trace& trace, const std::vector<LineCut>& cuts, const Context& context) {
-  VoidBorder border(terrain, trace);
+std::vector<DirectedBorder> void_border(const GridDomain& grid, const std::vector<DirectedBorder>& outline,
+                                        std::span<const Vec2> root_places, const std::vector<LineCut>& cuts,
+                                        const std::function<bool(Vec2)>& inside, const Context& context) {
+  VoidBorder border(grid, root_places, inside);
   border.add_outline(outline);
   border.add_cuts(cuts);
   border.add_sides(context);

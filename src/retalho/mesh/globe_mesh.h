@@ -5,10 +5,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "retalho/core/context.h"
 #include "retalho/terrain/evaluate.h"
+#include "retalho/terrain/tile_source.h"
 
 namespace retalho {
 
@@ -20,6 +25,18 @@ struct QuantizedMeshOptions {
   bool normals = true;   ///< with the extension of oct-encoded normals
   bool gzip = true;      ///< as servers send them; Cesium takes both
 };
+/// What is asked of a surface that is sampled: one that comes tile by tile can answer, too.
+struct GlobeSurface {
+  Georef georef;
+  Vec3 low, high;      ///< the box of its vertices, local coordinates
+  double columns = 0;  ///< cells from west to east
+  /// Height and gradient at local places, nullopt where there is no data. The same bits for the same place, whoever
+  /// asks for it and with what others. Called from several threads at once.
+  std::function<std::vector<std::optional<Jet>>(std::span<const Vec2>)> jets;
+};
+/// Refers to the model.
+GlobeSurface globe_surface(const TerrainEvaluator& model);
+
 struct GlobeNotes {
   std::size_t tiles = 0, triangles = 0, bytes = 0;
   int levels = 0;
@@ -35,6 +52,10 @@ inline constexpr int kQuantizedMeshCells = 128;  ///< samples from edge to edge 
 /// of two. So tiles of a level that share an edge have the same vertices there, decoded to the same bits, and the same
 /// normals: no cracks, and no skirts are needed. (Between levels a viewer sees steps of the tolerance.) Throws BadInput
 /// (no CRS, a model of less than a cell), UsageError (level 0 to 24; a million tiles), CannotWrite.
+/// A tile is sampled at once, tiles one level after the other and neighbours soon after each other.
+GlobeNotes write_quantized_mesh(const GlobeSurface& surface, const std::string& folder,
+                                const QuantizedMeshOptions& options = {}, bool overwrite = false,
+                                const Context& context = {});
 GlobeNotes write_quantized_mesh(const TerrainEvaluator& model, const std::string& folder,
                                 const QuantizedMeshOptions& options = {}, bool overwrite = false,
                                 const Context& context = {});
@@ -51,7 +72,13 @@ struct TilesetOptions {
 /// expects; positions are single precision about the tile's own middle (the node's translation), on a lattice of a
 /// power of two that loses nothing: tiles that share a vertex have it to the last bit. Throws BadInput (no CRS,
 /// coordinates that cannot be put on the globe), UsageError, CannotWrite.
+/// While it is made 48 bytes a vertex (96 where the surface comes tile by tile) and 12 (24) a triangle lie on disk in
+/// the folder, in files without names.
 GlobeNotes write_tileset(const Terrain& terrain, const std::string& folder, const TilesetOptions& options = {},
+                         bool overwrite = false, const Context& context = {});
+/// The same of a surface that comes tile by tile: the very files of the joined one. Memory: write_tile_mesh's, one tile
+/// of the output, and 3 kB for each.
+GlobeNotes write_tileset(const TileSource& tiles, const std::string& folder, const TilesetOptions& options = {},
                          bool overwrite = false, const Context& context = {});
 
 }  // namespace retalho

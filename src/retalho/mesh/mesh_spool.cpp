@@ -1,58 +1,12 @@
 #include "retalho/mesh/mesh_spool.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <utility>
-
-#include "retalho/core/error.h"
+#include <cstddef>
 
 namespace retalho {
 
-MeshSpool::MeshSpool(const std::string& temporary, std::string name) : name_(std::move(name)), cache_(kCached) {
-  vertex_file_ = open_part(temporary + ".vertices");
-  triangle_file_ = open_part(temporary + ".triangles");
-}
-
-MeshSpool::~MeshSpool() {
-  if (vertex_file_ >= 0) close(vertex_file_);
-  if (triangle_file_ >= 0) close(triangle_file_);
-}
-
-int MeshSpool::open_part(const std::string& path) const {
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (file < 0) throw CannotWrite(fmt::format("cannot write '{}': {}", name_, std::strerror(errno)), name_);
-  unlink(path.c_str());
-  return file;
-}
-
-void MeshSpool::put(int file, const void* bytes, std::size_t size, std::uint64_t at) const {
-  const auto* from = static_cast<const char*>(bytes);
-  while (size > 0) {
-    const ssize_t done = pwrite(file, from, size, static_cast<off_t>(at));
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) throw CannotWrite(fmt::format("cannot write '{}': {}", name_, std::strerror(errno)), name_);
-    from += done;
-    at += static_cast<std::uint64_t>(done);
-    size -= static_cast<std::size_t>(done);
-  }
-}
-
-void MeshSpool::get(int file, void* bytes, std::size_t size, std::uint64_t at) const {
-  auto* to = static_cast<char*>(bytes);
-  while (size > 0) {
-    const ssize_t done = pread(file, to, size, static_cast<off_t>(at));
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) throw CannotWrite(fmt::format("cannot write '{}': {}", name_, std::strerror(errno)), name_);
-    to += done;
-    at += static_cast<std::uint64_t>(done);
-    size -= static_cast<std::size_t>(done);
-  }
-}
+MeshSpool::MeshSpool(const std::string& temporary, const std::string& name)
+    : vertex_file_(temporary + ".vertices", name), triangle_file_(temporary + ".triangles", name), cache_(kCached) {}
 
 std::uint32_t MeshSpool::add_vertex(Vec3 position, Vec3 normal) {
   if (vertices_ == 0) low_ = high_ = position;
@@ -68,7 +22,7 @@ void MeshSpool::set_normal(std::uint32_t vertex, Vec3 normal) {
   if (vertex >= on_disk)
     new_vertices_[vertex - on_disk].normal = normal;
   else
-    put(vertex_file_, &normal, sizeof normal, vertex * sizeof(Vertex) + offsetof(Vertex, normal));
+    vertex_file_.put(&normal, sizeof normal, vertex * sizeof(Vertex) + offsetof(Vertex, normal));
 }
 
 void MeshSpool::add_triangle(const Triangle& vertices) {
@@ -78,10 +32,10 @@ void MeshSpool::add_triangle(const Triangle& vertices) {
 }
 
 void MeshSpool::flush() {
-  put(vertex_file_, new_vertices_.data(), new_vertices_.size() * sizeof(Vertex),
-      (vertices_ - new_vertices_.size()) * sizeof(Vertex));
-  put(triangle_file_, new_triangles_.data(), new_triangles_.size() * sizeof(Triangle),
-      (triangles_ - new_triangles_.size()) * sizeof(Triangle));
+  vertex_file_.put(new_vertices_.data(), new_vertices_.size() * sizeof(Vertex),
+                   (vertices_ - new_vertices_.size()) * sizeof(Vertex));
+  triangle_file_.put(new_triangles_.data(), new_triangles_.size() * sizeof(Triangle),
+                     (triangles_ - new_triangles_.size()) * sizeof(Triangle));
   new_vertices_.clear();
   new_triangles_.clear();
 }
@@ -90,7 +44,7 @@ const std::vector<MeshSpool::Vertex>& MeshSpool::block_of(std::uint64_t block) {
   Cached& cached = cache_[block % kCached];
   if (cached.block != block) {
     cached.vertices.resize(std::min<std::uint64_t>(kBlock, vertices_ - block * kBlock));
-    get(vertex_file_, cached.vertices.data(), cached.vertices.size() * sizeof(Vertex), block * kBlock * sizeof(Vertex));
+    vertex_file_.get(cached.vertices.data(), cached.vertices.size() * sizeof(Vertex), block * kBlock * sizeof(Vertex));
     cached.block = block;
   }
   return cached.vertices;
@@ -120,11 +74,11 @@ MeshStream MeshSpool::stream() {
     std::vector<Triangle> block;
     for (std::uint64_t from = 0; from < triangles_; from += block.size()) {
       block.resize(std::min<std::uint64_t>(kBlock, triangles_ - from));
-      get(triangle_file_, block.data(), block.size() * sizeof(Triangle), from * sizeof(Triangle));
+      triangle_file_.get(block.data(), block.size() * sizeof(Triangle), from * sizeof(Triangle));
       take(block);
     }
   };
-  stream.position = [this](std::uint32_t v) { return block_of(v / kBlock)[v % kBlock].position; };
+  stream.position = [this](std::uint32_t v) { return vertex(v).position; };
   return stream;
 }
 

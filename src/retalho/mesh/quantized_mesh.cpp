@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/mesh/globe_mesh.h"
+#include "retalho/mesh/mesh_stream.h"
 #include "retalho/mesh/quantized_tile.h"
 #include "retalho/mesh/terrain_mesh.h"
 #include "retalho/raster/geodetic.h"
@@ -30,17 +32,13 @@ struct Box {
 };
 
 /// Of the model's outline and inside, in degrees.
-Box box_of(const Terrain& terrain, const Geodetic& geodetic) {
-  Vec2 low = terrain.tin.points.at(0), high = low;
-  for (const Vec2 p : terrain.tin.points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+Box box_of(const GlobeSurface& surface, const Geodetic& geodetic) {
+  const Vec3 low = surface.low, high = surface.high;
   std::vector<Vec2> points;
   for (int i = 0; i <= kOutline; ++i)
     for (int j = 0; j <= kOutline; ++j)
       points.push_back(
-          terrain.georef.to_crs({low.x + (high.x - low.x) * i / kOutline, low.y + (high.y - low.y) * j / kOutline}));
+          surface.georef.to_crs({low.x + (high.x - low.x) * i / kOutline, low.y + (high.y - low.y) * j / kOutline}));
   geodetic.to_degrees(points);
   Box box;
   for (const Vec2 p : points) {
@@ -73,13 +71,11 @@ std::array<long, 4> range_of(const Box& box, int level) {
   return {at(box.west + 180, columns), at(box.south + 90, rows), at(box.east + 180, columns), at(box.north + 90, rows)};
 }
 
-int finest_level(const Terrain& terrain, const Box& box, const QuantizedMeshOptions& options) {
+int finest_level(const GlobeSurface& surface, const Box& box, const QuantizedMeshOptions& options) {
   if (options.level > kMostLevel)
     throw UsageError(fmt::format("the finest level must be 0 to {}, not {}", kMostLevel, options.level));
   if (options.level >= 0) return options.level;
-  const double columns =
-      terrain.grid.columns > 0 ? terrain.grid.columns : std::sqrt(static_cast<double>(terrain.tin.vertex_count()));
-  const double cell = std::max((box.east - box.west) / columns, 1e-9);
+  const double cell = std::max((box.east - box.west) / surface.columns, 1e-9);
   int level = 0;
   while (level < kMostLevel && size_of(level) / kQuantizedMeshCells > cell) ++level;
   return level;
@@ -87,7 +83,7 @@ int finest_level(const Terrain& terrain, const Box& box, const QuantizedMeshOpti
 
 /// What all tiles share.
 struct Work {
-  const TerrainEvaluator& model;
+  const GlobeSurface& surface;
   const QuantizedMeshOptions& options;
   Box box;
   int finest = 0;
@@ -109,7 +105,7 @@ double degrees_of(long tile, int k, int level, double from) {
 }
 
 Samples sample(const Work& work, const Geodetic& geodetic, const Place& at) {
-  const Georef& georef = work.model.terrain().georef;
+  const Georef& georef = work.surface.georef;
   const auto count = static_cast<std::size_t>(kSide * kSide);
   std::vector<Vec2> degrees, points;
   degrees.reserve(count);
@@ -121,15 +117,18 @@ Samples sample(const Work& work, const Geodetic& geodetic, const Place& at) {
     for (const Vec2 d : degrees)
       points.push_back({d.x + (d.x < 179 ? nudge.x : -nudge.x), d.y + (d.y < 89 ? nudge.y : -nudge.y)});
   geodetic.from_degrees(points);
+  std::vector<Vec2> local;
+  local.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) local.push_back(georef.to_local(points[k]));
+  const std::vector<std::optional<Jet>> jets = work.surface.jets(local);
   Samples samples;
   samples.heights.assign(count, work.options.outside);
   samples.normals.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     const EastNorthUp frame = east_north_up(degrees[k]);
     samples.normals.push_back(frame.up);
-    const Vec2 p = georef.to_local(points[k]);
-    if (std::isnan(p.x) || std::isnan(p.y)) continue;
-    const std::optional<Jet> jet = work.model.jet(p);
+    const Vec2 p = local[k];
+    const std::optional<Jet>& jet = jets[k];
     if (!jet) continue;
     samples.heights[k] = jet->value;
     // The way that a nudge goes, in the model and on the globe, gives the slope to the east and to the north.
@@ -204,12 +203,8 @@ void make_folder(const fs::path& folder) {
 }
 
 /// A power of two, such that all heights of any tile are within 32767 of it, and whole numbers of it are floats.
-double step_of(const Terrain& terrain, double outside) {
-  double low = outside, high = outside;
-  for (const double z : terrain.tin.heights) {
-    low = std::min(low, z);
-    high = std::max(high, z);
-  }
+double step_of(const GlobeSurface& surface, double outside) {
+  const double low = std::min(outside, surface.low.z), high = std::max(outside, surface.high.z);
   const double range = 1.5 * (high - low) + 1;  // a smooth surface passes its vertices' range a little
   const double largest = std::max(std::abs(low), std::abs(high)) + range;
   double step = std::exp2(std::ceil(std::log2(range / (kQuantizedMost - 1))));
@@ -217,17 +212,54 @@ double step_of(const Terrain& terrain, double outside) {
   return step;
 }
 
+/// Each square of 2 x 2 places, of 4 x 4 and so on, one after the other: what a surface has read for one is used again.
+void sort_by_squares(std::vector<Place>& places) {
+  const auto code = [](const Place& at) {
+    std::uint64_t bits = 0;
+    for (unsigned k = 0; k <= kMostLevel; ++k)
+      bits |= ((static_cast<std::uint64_t>(at.x) >> k & 1U) << (2 * k)) |
+              ((static_cast<std::uint64_t>(at.y) >> k & 1U) << (2 * k + 1));
+    return bits;
+  };
+  std::sort(places.begin(), places.end(),
+            [&](const Place& a, const Place& b) { return a.level != b.level ? a.level < b.level : code(a) < code(b); });
+}
+
 }  // namespace
+
+GlobeSurface globe_surface(const TerrainEvaluator& model) {
+  const Terrain& terrain = model.terrain();
+  GlobeSurface surface;
+  surface.georef = terrain.georef;
+  const auto place = [&](std::size_t v) {
+    return Vec3{terrain.tin.points[v].x, terrain.tin.points[v].y, terrain.tin.heights[v]};
+  };
+  surface.low = surface.high = place(0);
+  for (std::size_t v = 1; v < terrain.tin.vertex_count(); ++v) widen(surface.low, surface.high, place(v));
+  surface.columns =
+      terrain.grid.columns > 0 ? terrain.grid.columns : std::sqrt(static_cast<double>(terrain.tin.vertex_count()));
+  surface.jets = [&model](std::span<const Vec2> points) {
+    std::vector<std::optional<Jet>> jets;
+    jets.reserve(points.size());
+    for (const Vec2 p : points) jets.push_back(std::isnan(p.x) || std::isnan(p.y) ? std::nullopt : model.jet(p));
+    return jets;
+  };
+  return surface;
+}
 
 GlobeNotes write_quantized_mesh(const TerrainEvaluator& model, const std::string& folder,
                                 const QuantizedMeshOptions& options, bool overwrite, const Context& context) {
-  const Terrain& terrain = model.terrain();
-  const Geodetic geodetic(terrain.georef.crs_wkt);
-  Work work{model, options, box_of(terrain, geodetic)};
-  work.tolerance = mesh_tolerance(terrain, {.tolerance = options.tolerance});
-  work.finest = finest_level(terrain, work.box, options);
+  return write_quantized_mesh(globe_surface(model), folder, options, overwrite, context);
+}
+
+GlobeNotes write_quantized_mesh(const GlobeSurface& surface, const std::string& folder,
+                                const QuantizedMeshOptions& options, bool overwrite, const Context& context) {
+  const Geodetic geodetic(surface.georef.crs_wkt);
+  Work work{surface, options, box_of(surface, geodetic)};
+  work.tolerance = mesh_tolerance(surface.low.z, surface.high.z, {.tolerance = options.tolerance});
+  work.finest = finest_level(surface, work.box, options);
   if (!std::isfinite(options.outside)) throw UsageError("the height outside of the model must be a number");
-  work.step = step_of(terrain, options.outside);
+  work.step = step_of(surface, options.outside);
   std::vector<Place> places;
   std::vector<std::array<long, 4>> ranges;
   double count = 0;
@@ -244,10 +276,11 @@ GlobeNotes write_quantized_mesh(const TerrainEvaluator& model, const std::string
   const fs::path root(folder), layer = root / "layer.json";
   if (fs::exists(layer) && !overwrite)
     throw CannotWrite(fmt::format("'{}' exists: --overwrite replaces it", layer.string()), layer.string());
+  sort_by_squares(places);
   for (const Place& at : places) make_folder(root / std::to_string(at.level) / std::to_string(at.x));
   std::vector<std::size_t> triangles(places.size()), bytes(places.size());
   parallel_chunks(places.size(), 1, context, [&](std::size_t begin, std::size_t end) {
-    const Geodetic own(terrain.georef.crs_wkt);
+    const Geodetic own(surface.georef.crs_wkt);
     for (std::size_t k = begin; k < end; ++k) {
       const Place& at = places[k];
       const QuantizedTile tile = tile_of(work, sample(work, own, at), at);

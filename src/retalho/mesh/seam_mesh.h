@@ -85,4 +85,7 @@ class SeamMesh {
   MeshCheck check_;
 };
 
+/// Meshes all tiles into the spool: what write_tile_mesh writes.
+MeshCheck spool_tile_mesh(const TileSource& tiles, double tolerance, MeshSpool& spool, const Context& context);
+
 }  // namespace retalho

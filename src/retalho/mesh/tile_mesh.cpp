@@ -9,24 +9,28 @@
 
 namespace retalho {
 
+MeshCheck spool_tile_mesh(const TileSource& tiles, double tolerance, MeshSpool& spool, const Context& context) {
+  SeamMesh joined(spool);
+  std::vector<TileMesh> slots(tile_slots(tiles, context));
+  each_tile(
+      tiles, "mesh", context,
+      [&](const PlacedTile* tile, const TilePlace& place, std::size_t s, const Context& inside) {
+        slots[s] = tile == nullptr ? TileMesh{} : mesh_tile(*tile, tolerance, place, inside);
+      },
+      [&](const TilePlace& place, std::size_t s) {
+        joined.add(slots[s], !place.east);
+        slots[s] = {};
+      });
+  return joined.finish();
+}
+
 TileMeshFacts write_tile_mesh(const TileSource& tiles, double tolerance, const std::string& path, bool overwrite,
                               const Context& context) {
   TileMeshFacts facts;
   std::optional<MeshSpool> spool;  // outlives the stream
   write_stream(path, overwrite, [&](const std::string& temporary) {
     spool.emplace(temporary, path);
-    SeamMesh joined(*spool);
-    std::vector<TileMesh> slots(tile_slots(tiles, context));
-    each_tile(
-        tiles, "mesh", context,
-        [&](const PlacedTile* tile, const TilePlace& place, std::size_t s, const Context& inside) {
-          slots[s] = tile == nullptr ? TileMesh{} : mesh_tile(*tile, tolerance, place, inside);
-        },
-        [&](const TilePlace& place, std::size_t s) {
-          joined.add(slots[s], !place.east);
-          slots[s] = {};
-        });
-    facts.check = joined.finish();
+    facts.check = spool_tile_mesh(tiles, tolerance, *spool, context);
     facts.vertices = spool->vertices();
     facts.triangles = spool->triangles();
     MeshStream stream = spool->stream();

@@ -78,6 +78,17 @@ FieldSource field_of(const TerrainEvaluator& evaluator) {
   };
 }
 
+FieldSource field_of(TileReader& reader) {
+  return [&reader](const Window& window, const Context& context) {
+    const Window own = moved_window(window, reader.index().georef);
+    HeightField field;
+    field.heights.resize(size_of(window));
+    field.gradients.resize(size_of(window));
+    sample_rows(reader, {own.origin, own.step, own.columns, 0, own.rows}, field.heights, field.gradients, context);
+    return field;
+  };
+}
+
 FieldSource field_of(const Raster& raster) {
   return [&raster](const Window& window, const Context& context) {
     const Window own = moved_window(window, raster.georef);

@@ -9,6 +9,7 @@
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/bicubic.h"
 #include "retalho/terrain/evaluate.h"
+#include "retalho/tiles/reader.h"
 
 namespace retalho {
 
@@ -38,6 +39,9 @@ using FieldSource = std::function<HeightField(const Window&, const Context&)>;
 
 /// The model's heights and true gradients. Refers to the evaluator.
 FieldSource field_of(const TerrainEvaluator& evaluator);
+/// The same of a tiled model, as from the joined one but for rounding; each tile is read once a window. Refers to the
+/// reader.
+FieldSource field_of(TileReader& reader);
 /// A grid as it is: bilinear between cell centres, gradients by central differences at them; no data where the nearest
 /// cell is void or beyond half a cell outside. Refers to the raster.
 FieldSource field_of(const Raster& raster);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "retalho/core/in_order.h"
 #include "retalho/core/parallel.h"
@@ -57,6 +58,31 @@ void each_tile(const TileSource& source, const char* stage, const Context& conte
         take(place_of(source, k), slot);
         context.report(stage, static_cast<double>(k + 1) / static_cast<double>(source.tiles()));
       });
+}
+
+VertexBox vertex_box(const TileSource& source, const Context& context) {
+  std::vector<VertexBox> slots(tile_slots(source, context));
+  VertexBox whole;
+  const auto add = [](VertexBox& box, Vec3 p) {
+    if (!box.data) box = {p, p, true};
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  };
+  each_tile(
+      source, "range", context,
+      [&](const PlacedTile* tile, const TilePlace&, std::size_t s, const Context&) {
+        slots[s] = {};
+        if (tile == nullptr) return;
+        const Tin& tin = tile->terrain.tin;
+        for (std::size_t v = 0; v < tin.vertex_count(); ++v)
+          add(slots[s], {tin.points[v].x, tin.points[v].y, tin.heights[v]});
+      },
+      [&](const TilePlace&, std::size_t s) {
+        if (!slots[s].data) return;
+        add(whole, slots[s].low);
+        add(whole, slots[s].high);
+      });
+  return whole;
 }
 
 }  // namespace retalho

@@ -24,6 +24,7 @@ struct PlacedTile {
 /// gradient, and the same splits of its edges.
 struct TileSource {
   int tile_rows = 0, tile_columns = 0;
+  int columns = 0, rows = 0;  ///< cells of the whole grid
   Georef georef;
   double cell_width = 1, cell_height = 1;  ///< local units
   std::size_t at_once = 1;                 ///< how many tiles may be held at a time
@@ -32,6 +33,12 @@ struct TileSource {
   std::function<std::optional<PlacedTile>(int row, int column)> load;
 
   std::size_t tiles() const { return static_cast<std::size_t>(tile_rows) * static_cast<std::size_t>(tile_columns); }
+};
+
+/// The box of all vertices, in coordinates of the whole.
+struct VertexBox {
+  Vec3 low, high;
+  bool data = false;  ///< is there any vertex?
 };
 
 /// Where a tile lies, and beyond which of its sides there is another one.
@@ -49,5 +56,8 @@ void each_tile(const TileSource& source, const char* stage, const Context& conte
                                         const Context& inside)>& make,
                const std::function<void(const TilePlace& place, std::size_t slot)>& take);
 std::size_t tile_slots(const TileSource& source, const Context& context);
+
+/// Reads every tile once.
+VertexBox vertex_box(const TileSource& source, const Context& context = {});
 
 }  // namespace retalho

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -90,6 +91,27 @@ std::optional<Jet> TileReader::jet(Vec2 p) {
       jet = jet_in(r + dr, c + dc, p);
     }
   return jet;
+}
+
+std::vector<std::optional<Jet>> TileReader::jets(std::span<const Vec2> points) {
+  struct Asked {
+    std::int64_t tile;
+    std::size_t point;
+  };
+  std::vector<Asked> order(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double column = points[k].x / index_.cell_width, row = -points[k].y / index_.cell_height;
+    const bool place = std::isfinite(column) && std::isfinite(row);
+    order[k] = {place ? std::int64_t{index_.tile_columns()} * tile_of(row, index_.tile_size, index_.tile_rows()) +
+                            tile_of(column, index_.tile_size, index_.tile_columns())
+                      : -1,
+                k};
+  }
+  std::sort(order.begin(), order.end(),
+            [](const Asked& a, const Asked& b) { return a.tile != b.tile ? a.tile < b.tile : a.point < b.point; });
+  std::vector<std::optional<Jet>> jets(points.size());
+  for (const Asked& one : order) jets[one.point] = jet(points[one.point]);
+  return jets;
 }
 
 std::size_t TileReader::reads() const {

@@ -56,6 +56,9 @@ class TileReader {
   /// derivatives as the joined model has them, but for rounding; nullopt where there is no data.
   std::optional<Jet> jet(Vec2 p);
 
+  /// jet() at each of them, asked tile by tile: a tile is read once whatever the bound.
+  std::vector<std::optional<Jet>> jets(std::span<const Vec2> points);
+
   std::size_t reads() const;      ///< of tiles, so far
   std::size_t most_kept() const;  ///< bytes, the most so far
 

@@ -11,6 +11,8 @@ TileSource tile_source(const std::string& folder, std::size_t bound) {
   TileSource source;
   source.tile_rows = index->tile_rows();
   source.tile_columns = index->tile_columns();
+  source.columns = index->columns;
+  source.rows = index->rows;
   source.georef = index->georef;
   source.cell_width = index->cell_width;
   source.cell_height = index->cell_height;
@@ -25,6 +27,16 @@ TileSource tile_source(const std::string& folder, std::size_t bound) {
     return load_placed_tile(*index, entry, folder);
   };
   return source;
+}
+
+GlobeSurface globe_surface(TileReader& reader, const VertexBox& box) {
+  GlobeSurface surface;
+  surface.georef = reader.index().georef;
+  surface.low = box.low;
+  surface.high = box.high;
+  surface.columns = reader.index().columns;
+  surface.jets = [&reader](std::span<const Vec2> points) { return reader.jets(points); };
+  return surface;
 }
 
 }  // namespace retalho
