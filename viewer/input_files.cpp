@@ -14,6 +14,7 @@
 #include "retalho/curve/document.h"
 #include "retalho/curve/expression.h"
 #include "retalho/model/model.h"
+#include "retalho/model/tiled.h"
 #include "retalho/patch/document.h"
 #include "retalho/raster/io.h"
 #include "retalho/tetraquad/document.h"
@@ -97,6 +98,21 @@ void read_model(InputFiles& inputs, const std::string& path, const std::string& 
   }
 }
 
+/// Of all tiles, those on seams as often as tiles have them.
+std::size_t vertices_of(const std::string& tiles) {
+  std::size_t sum = 0;
+  for (const TileEntry& entry : read_tiled_index(tiles).tiles) sum += entry.vertices;
+  return sum;
+}
+
+void add_tiles(InputFiles& inputs, const std::string& path, const std::string& name, const Context& context) {
+  auto tiles = std::make_shared<TiledTerrain>(path, TileReader::kBound, context);
+  const TiledIndex& index = tiles->index();
+  std::string words = fmt::format("{} model of {} x {} cells in {} tiles, shown by its tiles: coarse where it is far",
+                                  surface_name(index.surface), index.columns, index.rows, index.tiles.size());
+  inputs.terrains.push_back({name, std::move(words), nullptr, nullptr, std::move(tiles)});
+}
+
 /// The text as JSON. Throws CannotRead with line and column.
 Json parse_json(const std::string& text, const std::string& path) {
   try {
@@ -177,11 +193,14 @@ std::string view_of_first(const InputFiles& inputs) {
 
 }  // namespace
 
-InputFiles read_inputs(const std::vector<std::string>& paths, const Context& context) {
+InputFiles read_inputs(const std::vector<std::string>& paths, const Context& context, std::size_t most_joined) {
   InputFiles inputs;
   for (const std::string& path : paths) {
-    const std::string name = std::filesystem::path(path).filename().string();
-    if (is_model_file(path))
+    std::string name = std::filesystem::path(path).filename().string();
+    if (name.empty()) name = std::filesystem::path(path).parent_path().filename().string();  // a folder with a slash
+    if (is_tiled_model(path) && vertices_of(path) > most_joined)
+      add_tiles(inputs, path, name, context);
+    else if (is_model_file(path))
       read_model(inputs, path, name);
     else if (std::filesystem::path(path).extension() == ".json")
       read_json(inputs, path, name);

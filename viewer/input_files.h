@@ -14,15 +14,19 @@
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/terrain.h"
 #include "retalho/tetraquad/tetraquad.h"
+#include "tiled_terrain.h"
 
 namespace retalho::viewer {
 
-/// A terrain to look at: a grid, or a model, or both.
+/// A terrain to look at: a grid, a model, or a tiled model that is not joined.
 struct TerrainInput {
   std::string name;                      ///< the file's name without its folder, or what the example is
   std::string described;                 ///< one line
   std::shared_ptr<const Raster> grid;    ///< null for a model
   std::shared_ptr<const Terrain> model;  ///< null for a grid
+  std::shared_ptr<TiledTerrain> tiles = nullptr;
+
+  const Georef& georef() const { return grid ? grid->georef : tiles ? tiles->index().georef : model->georef; }
 };
 
 /// An implicit surface: a model file, or quadrics by hand (docs/tetraquad.md).
@@ -63,7 +67,8 @@ struct InputFiles {
 
 /// Reads `paths`; with no terrain among them there is an example made by formula. What a JSON file is, its keys say:
 /// "patches", "tetrahedra", "curves". Throws as the readers do, and BadInput for a file of a kind that the page cannot
-/// show, or that is larger than it can draw.
-InputFiles read_inputs(const std::vector<std::string>& paths, const Context& context);
+/// show, or that is larger than it can draw. A tiled model of more than `most_joined` vertices is shown by its tiles.
+InputFiles read_inputs(const std::vector<std::string>& paths, const Context& context,
+                       std::size_t most_joined = kMostJoined);
 
 }  // namespace retalho::viewer

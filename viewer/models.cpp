@@ -49,7 +49,11 @@ ModelPointer Models::fit(const Json& input, const Context& context) {
   auto model = std::make_shared<FittedModel>();
   model->file = file;
   model->grid = source.grid;
-  if (source.model) {
+  if (source.tiles) {
+    model->id = fmt::format("{}", file);
+    if (ModelPointer known = find(model->id)) return known;
+    model->tiles = source.tiles;
+  } else if (source.model) {
     model->id = fmt::format("{}", file);
     if (ModelPointer known = find(model->id)) return known;
     model->terrain = source.model;
@@ -69,8 +73,10 @@ ModelPointer Models::fit(const Json& input, const Context& context) {
     model->errors = assess(terrain, *source.grid, max_error, context);
     model->terrain = std::make_shared<const Terrain>(std::move(terrain));
   }
-  model->evaluator = std::make_unique<TerrainEvaluator>(*model->terrain, context);
-  model->bends = measure_bends(*model->evaluator, context);
+  if (model->terrain) {
+    model->evaluator = std::make_unique<TerrainEvaluator>(*model->terrain, context);
+    model->bends = measure_bends(*model->evaluator, context);
+  }
   model->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   const std::lock_guard lock(mutex_);
   kept_.push_front(model);
@@ -78,12 +84,54 @@ ModelPointer Models::fit(const Json& input, const Context& context) {
   return model;
 }
 
-std::shared_ptr<const Raster> Models::grid_of(const FittedModel& model, const Context& context) {
-  if (model.grid) return model.grid;
-  return std::make_shared<const Raster>(raster_of_cells(*model.evaluator, context));
+Models::Ground Models::grid_of(const FittedModel& model, Vec2 around, double radius, const Context& context) {
+  if (model.grid) return {model.grid, {}};
+  if (!model.tiles) return {std::make_shared<const Raster>(raster_of_cells(*model.evaluator, context)), {}};
+  const TiledIndex& index = model.tiles->index();
+  const auto range = [&](double at, double cell, int count) {
+    if (radius == 0) return std::pair{0, count};
+    const double reach = radius / cell + 1;
+    const auto within = [&](double c) { return static_cast<int>(std::clamp(c, 0.0, count - 1.0)); };
+    const int first = within(std::floor(at / cell - reach));
+    return std::pair{first, within(std::ceil(at / cell + reach)) - first + 1};
+  };
+  const auto [column, columns] = range(around.x, index.cell_width, index.columns);
+  const auto [row, rows] = range(-around.y, index.cell_height, index.rows);
+  if (static_cast<double>(columns) * rows > kMostSeen)
+    throw BadInput(fmt::format("{} x {} cells are more than the page can look over: give a smaller radius, or use "
+                               "`retalho viewshed`",
+                               columns, rows),
+                   {}, "radius");
+  return {
+      std::make_shared<const Raster>(raster_of_window(model.tiles->reader(), {column, row, columns, rows}, context)),
+      {column * index.cell_width, -row * index.cell_height}};
 }
 
+namespace {
+
+Json tiles_json(const FittedModel& model) {
+  const TiledIndex& index = model.tiles->index();
+  std::size_t vertices = 0, triangles = 0;
+  for (const TileEntry& entry : index.tiles) {
+    vertices += entry.vertices;
+    triangles += entry.triangles;
+  }
+  return {{"surface", surface_name(index.surface)},
+          {"gradients", gradient_name(index.surface == SurfaceKind::linear ? GradientKind::none
+                                      : index.fitted                       ? GradientKind::fitted
+                                                                           : GradientKind::normals)},
+          {"vertices", vertices},
+          {"triangles", triangles},
+          {"coefficients", vertices * (index.surface == SurfaceKind::linear ? 1 : 3)},
+          {"tiles", index.tiles.size()},
+          {"tolerance", index.max_error},
+          {"seconds", model.seconds}};
+}
+
+}  // namespace
+
 Json report_json(const FittedModel& model) {
+  if (model.tiles) return tiles_json(model);
   const Terrain& terrain = *model.terrain;
   Json json = {{"surface", surface_name(terrain.kind)},
                {"gradients", gradient_name(terrain.gradient_kind)},

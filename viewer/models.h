@@ -18,10 +18,14 @@ namespace retalho::viewer {
 struct FittedModel {
   std::string id;  ///< says which file and which options: the same ones, the same id
   std::size_t file = 0;
-  std::shared_ptr<const Raster> grid;  ///< what it is compared with; null for a model file
-  std::shared_ptr<const Terrain> terrain;
+  std::shared_ptr<const Raster> grid;      ///< what it is compared with; null for a model file
+  std::shared_ptr<const Terrain> terrain;  ///< null for a tiled model that is not joined, and so are the next two
   std::unique_ptr<TerrainEvaluator> evaluator;
   SurfaceBends bends;  ///< for the picture's level of detail
+  std::shared_ptr<TiledTerrain> tiles;
+
+  const Georef& georef() const { return tiles ? tiles->index().georef : terrain->georef; }
+  std::optional<Jet> jet(Vec2 local) const { return tiles ? tiles->reader().jet(local) : evaluator->jet(local); }
   std::optional<ErrorReport> errors;
   double seconds = 0;
 };
@@ -38,8 +42,15 @@ class Models {
   ModelPointer fit(const Json& input, const Context& context);
   /// The model that {"model": id} names. Throws BadInput when it is no longer kept.
   ModelPointer get(const Json& input) const;
-  /// The heights that a viewshed is computed on: the file's grid, or the model at the cells that it was made from.
-  std::shared_ptr<const Raster> grid_of(const FittedModel& model, const Context& context);
+  /// The heights that a viewshed is computed on: the file's grid, or the model at the cells that it was made from; of a
+  /// tiled model those within `radius` (0: all) of `around`, local coordinates, and its grid's `origin` is then another
+  /// one. Throws BadInput for more cells than kMostSeen.
+  struct Ground {
+    std::shared_ptr<const Raster> grid;
+    Vec2 origin;  ///< of its first cell, in the model's local coordinates
+  };
+  static constexpr double kMostSeen = 5e7;
+  Ground grid_of(const FittedModel& model, Vec2 around, double radius, const Context& context);
 
  private:
   ModelPointer find(const std::string& id) const;

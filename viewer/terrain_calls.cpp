@@ -41,6 +41,10 @@ HeightRange heights_of(const Terrain& terrain) {
   const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
   return {*low, *high};
 }
+HeightRange heights_of(const FittedModel& model) {
+  if (model.tiles) return {model.tiles->low(), model.tiles->high()};
+  return heights_of(*model.terrain);
+}
 
 /// What the page takes from every coordinate, so that its floats keep their digits: the middle of the file's box. It
 /// depends on the file alone: all panels share it.
@@ -51,6 +55,7 @@ Vec3 origin_of(const Models& models, std::size_t file) {
     const Vec2 middle = g.centre((g.columns - 1) / 2.0, (g.rows - 1) / 2.0);
     return {middle.x, middle.y, 0};
   }
+  if (input.tiles) return {input.tiles->middle().x, input.tiles->middle().y, 0};
   Vec2 low = input.model->tin.points.at(0), high = low;
   for (const Vec2 p : input.model->tin.points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
@@ -65,8 +70,10 @@ void push(std::vector<float>& to, Vec3 p, Vec3 origin) {
   to.push_back(static_cast<float>(p.z - origin.z));
 }
 
-/// The triangulation's edges along the surface: a straight one for flat pieces, four pieces where it is curved.
+/// The triangulation's edges along the surface: a straight one for flat pieces, four pieces where it is curved; none of
+/// a tiled model that is not joined.
 std::vector<float> edge_lines(const FittedModel& model, Vec3 origin) {
+  if (model.tiles) return {};
   const Tin& tin = model.terrain->tin;
   const EdgeTable& edges = model.evaluator->edges();
   const int pieces = model.terrain->kind == SurfaceKind::linear || edges.vertices.size() > 150'000 ? 1 : 4;
@@ -96,13 +103,13 @@ bool is_vector(const Json& v) {
 /// {"eye": [x, y, z], "forward", "stretch", "angle", "triangles"}: see detail.h. The eye is in the page's coordinates;
 /// without one the surface is seen from straight above and far away, to 1/2000 of its range of heights. Where the
 /// triangulation itself takes most of the triangles, half of them come on top.
-DetailOptions detail_of(const Json& input, const Terrain& terrain, Vec3 origin) {
+DetailOptions detail_of(const Json& input, const FittedModel& model, Vec3 origin) {
   DetailOptions options;
   const auto wanted = static_cast<std::size_t>(whole(input, "triangles", 1000, 4'000'000));
-  options.budget = std::max(wanted, terrain.tin.triangle_count() + wanted / 2);
+  options.budget = model.tiles ? wanted : std::max(wanted, model.terrain->tin.triangle_count() + wanted / 2);
   const auto at = input.find("eye");
   if (at == input.end()) {
-    const HeightRange range = heights_of(terrain);
+    const HeightRange range = heights_of(model);
     options.eye = {origin.x, origin.y, kFar};
     options.angle = std::max(1e-9, (range.high - range.low) / 2000) / kFar;
     return options;
@@ -131,6 +138,12 @@ std::vector<Array> mesh_arrays(const TriangleMesh& mesh, Vec3 origin) {
   return {make_array("position", positions), make_array("normal", normals), make_array("index", indices)};
 }
 
+TriangleMesh seen_mesh(const FittedModel& model, const DetailOptions& options, DetailNotes& notes,
+                       const Context& context) {
+  if (model.tiles) return model.tiles->detail(options, &notes, context);
+  return detail_mesh(*model.evaluator, model.bends, options, &notes, context);
+}
+
 Json detail_words(const TriangleMesh& mesh, const DetailNotes& notes) {
   return {{"triangles", mesh.triangles.size()}, {"angle", notes.angle}, {"finest", notes.finest}, {"cut", notes.cut}};
 }
@@ -139,7 +152,7 @@ Answer files_call(const Models& models, const std::string& first_view) {
   Json list = Json::array();
   for (std::size_t i = 0; i < models.inputs().size(); ++i) {
     const TerrainInput& input = models.inputs()[i];
-    const Georef& georef = input.grid ? input.grid->georef : input.model->georef;
+    const Georef& georef = input.georef();
     Json one = {{"name", input.name},  {"described", input.described},    {"kind", input.grid ? "grid" : "model"},
                 {"unit", georef.unit}, {"geographic", georef.geographic}, {"crs", crs_name(georef.crs_wkt)}};
     if (input.grid) {
@@ -151,6 +164,10 @@ Answer files_call(const Models& models, const std::string& first_view) {
       one["low"] = number_or_null(summary.minimum);
       one["high"] = number_or_null(summary.maximum);
       one["valid"] = summary.valid;
+    } else if (input.tiles) {
+      one["low"] = input.tiles->low();
+      one["high"] = input.tiles->high();
+      one["cell"] = std::min(input.tiles->index().cell_width, input.tiles->index().cell_height);
     } else {
       const HeightRange range = heights_of(*input.model);
       one["low"] = range.low;
@@ -166,11 +183,10 @@ Answer files_call(const Models& models, const std::string& first_view) {
 /// Fits, and gives the surface as triangles, as they are seen from the eye.
 Answer fit_call(Models& models, const Json& input, const Context& context) {
   const ModelPointer model = models.fit(input, context);
-  const HeightRange range = heights_of(*model->terrain);
+  const HeightRange range = heights_of(*model);
   const Vec3 origin = origin_of(models, model->file);
   DetailNotes notes;
-  const TriangleMesh mesh =
-      detail_mesh(*model->evaluator, model->bends, detail_of(input, *model->terrain, origin), &notes, context);
+  const TriangleMesh mesh = seen_mesh(*model, detail_of(input, *model, origin), notes, context);
   Json words = report_json(*model);
   words["model"] = model->id;
   words["detail"] = detail_words(mesh, notes);
@@ -186,8 +202,7 @@ Answer detail_call(const Models& models, const Json& input, const Context& conte
   const ModelPointer model = models.get(input);
   const Vec3 origin = origin_of(models, model->file);
   DetailNotes notes;
-  const TriangleMesh mesh =
-      detail_mesh(*model->evaluator, model->bends, detail_of(input, *model->terrain, origin), &notes, context);
+  const TriangleMesh mesh = seen_mesh(*model, detail_of(input, *model, origin), notes, context);
   return {detail_words(mesh, notes), mesh_arrays(mesh, origin)};
 }
 
@@ -227,21 +242,38 @@ Answer errors_call(const Models& models, const Json& input, const Context& conte
           {make_array("error", error)}};
 }
 
-Answer contours_call(const Models& models, const Json& input, const Context& context) {
-  const ModelPointer model = models.get(input);
-  const Terrain& terrain = *model->terrain;
-  const double interval = number(input, "interval", 1e-9, 1e9), base = number_or(input, "base", -1e9, 1e9, 0);
-  const HeightRange range = heights_of(terrain);
+/// Levels that are not too many for a page.
+std::vector<double> shown_levels(HeightRange range, double interval, double base) {
   const double beyond = 0.25 * (range.high - range.low);  // a smooth surface may rise above its vertices
   std::vector<double> levels = contour_levels(range.low - beyond, range.high + beyond, interval, base);
   if (levels.size() > 2000)
     throw BadInput(fmt::format("an interval of {:.6g} makes {} levels: choose a larger one", interval, levels.size()),
                    {}, "interval");
+  return levels;
+}
+
+ContourSet contours_of(const FittedModel& model, double interval, double base, const Context& context) {
+  const auto check_points = [](std::size_t points) {
+    if (points > kMostContourPoints)
+      throw BadInput("these contours have too many points to draw: choose a larger interval", {}, "interval");
+  };
+  if (model.tiles) {
+    const SurfaceRange range = model.tiles->range(context);
+    return model.tiles->contours(shown_levels({range.low, range.high}, interval, base), check_points, context);
+  }
+  const Terrain& terrain = *model.terrain;
   const double cell = terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height)
                                                : norm(terrain.tin.points.at(0) - terrain.tin.points.at(1));
-  const ContourSet set = trace_contours(terrain, std::move(levels), {.tolerance = 0.1 * cell}, context);
-  if (set.points.size() > kMostContourPoints)
-    throw BadInput("these contours have too many points to draw: choose a larger interval", {}, "interval");
+  ContourSet set =
+      trace_contours(terrain, shown_levels(heights_of(terrain), interval, base), {.tolerance = 0.1 * cell}, context);
+  check_points(set.points.size());
+  return set;
+}
+
+Answer contours_call(const Models& models, const Json& input, const Context& context) {
+  const ModelPointer model = models.get(input);
+  const double interval = number(input, "interval", 1e-9, 1e9), base = number_or(input, "base", -1e9, 1e9, 0);
+  const ContourSet set = contours_of(*model, interval, base, context);
   const Vec3 origin = origin_of(models, model->file);
   std::vector<float> segments;
   std::vector<std::uint8_t> major;
@@ -292,13 +324,13 @@ double grid_height(const Raster& grid, Vec2 local) {
 
 Answer at_call(const Models& models, const Json& input) {
   const ModelPointer model = models.get(input);
-  const Georef& georef = model->terrain->georef;
+  const Georef& georef = model->georef();
   const Vec3 origin = origin_of(models, model->file);
   const Vec2 local = input.contains("crs_x")
                          ? georef.to_local({number(input, "crs_x", -kFar, kFar), number(input, "crs_y", -kFar, kFar)})
                          : local_point(models, *model, input);
   const Vec2 crs = georef.to_crs(local);
-  const std::optional<Jet> jet = model->evaluator->jet(local);
+  const std::optional<Jet> jet = model->jet(local);
   Json words = {{"x", crs.x},
                 {"y", crs.y},
                 {"valid", jet.has_value()},
@@ -341,10 +373,11 @@ Answer profile_call(const Models& models, const Json& input) {
     const double along = norm(step) > 0 ? std::clamp((d - before) / norm(step), 0.0, 1.0) : 0.0;
     const Vec2 p = corners[piece] + along * step;
     distance.push_back(d);
-    surface.push_back(model->evaluator->value(p));
+    const std::optional<Jet> jet = model->jet(p);
+    surface.push_back(jet ? jet->value : kNan);
     grid.push_back(model->grid ? between_cells(*model->grid, p) : kNan);
   }
-  return {{{"length", length}, {"unit", model->terrain->georef.unit}},
+  return {{{"length", length}, {"unit", model->georef().unit}},
           {make_array("distance", distance), make_array("surface", surface), make_array("grid", grid)}};
 }
 
@@ -353,17 +386,22 @@ Answer profile_call(const Models& models, const Json& input) {
 Answer save_call(const Models& models, const Json& input, const Context& context) {
   const std::string format = save_format(input);
   const ModelPointer model = models.get(input);
+  if (model->tiles)
+    throw BadInput(
+        "a tiled model is not joined by the page: its folder is its file, and `retalho mesh` makes triangles "
+        "of it",
+        {}, "format");
   if (format == "retalho") return saved_model(encode_model(*model->terrain));
   return saved_mesh(mesh_terrain(*model->terrain, {}, context), format);
 }
 
 Answer viewshed_call(Models& models, const Json& input, const Context& context) {
   const ModelPointer model = models.get(input);
-  const std::shared_ptr<const Raster> grid = models.grid_of(*model, context);
-  const Vec2 crs = grid->georef.to_crs(local_point(models, *model, input));
-  const Observer observer = observer_at(*grid, crs, number(input, "height", 0, 1e5));
   ViewshedOptions options;
   options.radius = number_or(input, "radius", 0, kFar, 0);
+  const Vec2 place = local_point(models, *model, input);
+  const auto& [grid, corner] = models.grid_of(*model, place, options.radius, context);
+  const Observer observer = observer_at(*grid, model->georef().to_crs(place), number(input, "height", 0, 1e5));
   options.target_height = number_or(input, "target_height", 0, 1e5, 0);
   const std::vector<std::uint8_t> seen = viewshed(*grid, observer, options, context);
   const auto visible = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
@@ -379,7 +417,7 @@ Answer viewshed_call(Models& models, const Json& input, const Context& context) 
       picture.push_back(seen[grid->index(column, row)] ? 255 : 0);
     }
   const Vec3 origin = origin_of(models, model->file);
-  const Vec2 cell = grid->centre(observer.column, observer.row);
+  const Vec2 cell = grid->centre(observer.column, observer.row) + corner;
   return {{{"visible_cells", visible},
            {"cells", grid->cells()},
            {"columns", columns},
@@ -387,8 +425,8 @@ Answer viewshed_call(Models& models, const Json& input, const Context& context) 
            {"observer", {cell.x - origin.x, cell.y - origin.y}},
            {"ground", grid->at(observer.column, observer.row)},
            {"box",
-            {-0.5 * grid->cell_width - origin.x, 0.5 * grid->cell_height - origin.y, columns * block * grid->cell_width,
-             rows * block * grid->cell_height}}},
+            {corner.x - 0.5 * grid->cell_width - origin.x, corner.y + 0.5 * grid->cell_height - origin.y,
+             columns * block * grid->cell_width, rows * block * grid->cell_height}}},
           {make_array("seen", picture)}};
 }
 

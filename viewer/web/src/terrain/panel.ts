@@ -25,6 +25,7 @@ export interface Report {
   vertices: number;
   triangles: number;
   coefficients: number;
+  tiles?: number;  // of a tiled model that is not joined
   rmse?: number;
   max_error?: number;
   slope_rmse?: number;

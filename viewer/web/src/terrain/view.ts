@@ -95,7 +95,7 @@ export class TerrainView {
       this.refresh();
     });
     // The triangles follow the eye when the camera rests. The surface of flat triangles is drawn as it is.
-    const detail = model && panel.report?.surface !== 'linear' ? {model, ...this.look(), triangles: budget} : null;
+    const detail = model && (panel.report?.tiles || panel.report?.surface !== 'linear') ? {model, ...this.look(), triangles: budget} : null;
     this.tasks.want(`detail ${k}`, 'Refining what is near', detail && JSON.stringify(detail), async (signal) => {
       panel.takeDetail(await ask('/api/terrain/detail', detail ?? {}, signal));
       this.refresh();
