@@ -17,8 +17,12 @@ namespace {
 TileOptions options_of(const TileFlags& flags, const BudgetFlags& budget, const SurfaceFlags& surface) {
   if ((budget.max_error ? 1 : 0) + (budget.vertices ? 1 : 0) + (budget.ratio.empty() ? 0 : 1) != 1)
     throw UsageError("--tiles takes one of --max-error E, --vertices N and --ratio R", {}, "--tiles");
-  if ((!surface.refine.empty() || !surface.effort.empty()) && refines_surface(surface, budget, false))
-    throw UsageError("--tiles takes --refine flat", {}, "--tiles");
+  const bool refine = (!surface.refine.empty() || !surface.effort.empty()) && refines_surface(surface, budget, false);
+  if (refine && budget.max_error)
+    throw UsageError(
+        "--tiles takes --refine surface with --vertices or --ratio: a seam's cells cannot be held to a "
+        "--max-error by what is inside of a tile",
+        {}, "--refine");
   const FitKind fit = resolve_fit(surface, false);
   if (fit == FitKind::z_only)
     throw UsageError(
@@ -35,7 +39,8 @@ TileOptions options_of(const TileFlags& flags, const BudgetFlags& budget, const 
   options.vertices = budget.vertices.value_or(0);
   if (!budget.ratio.empty()) options.ratio = parse_ratio("--ratio", budget.ratio);
   options.surface = resolved.surface;
-  options.fitted = fit == FitKind::least_squares;
+  options.fitted = refine || fit == FitKind::least_squares;
+  if (refine) options.refine = resolve_effort(surface);
   return options;
 }
 
@@ -74,6 +79,7 @@ void fit_tiles(const Program& program, const TileFlags& flags, const std::string
   }
   const nlohmann::ordered_json json = {{"surface", surface_name(index.surface)},
                                        {"fit", index.fitted ? "least-squares" : "interpolate"},
+                                       {"refine", index.effort.empty() ? "flat" : "surface"},
                                        {"max_error", index.max_error},
                                        {"budget", index.budget},
                                        {"tiles", index.tiles.size()},

@@ -103,7 +103,7 @@ ROWS = [
     ("fit g.asc -o o.retalho --surface smoth", 2, "is one of linear, powell-sabin, clough-tocher; not 'smoth'"), ("fit p.xyz -o o.retalho --tiles 64", 2, "--tiles takes grids"),
     ("fit g.asc -o o.retalho --jobs 2", 2, "--jobs goes with --tiles"), ("fit g.asc -o o --tiles 64", 2, "--tiles takes one of --max-error E"), ("fit g.asc -o o --tiles 64 --max-error 1 --format compact", 2, "--tiles writes exact models: leave --format compact out"),
     ("fit g.asc -o o --tiles 64 --max-error 1 --gradients quadratic", 2, "--tiles takes --gradients normals and --cross-derivative perpendicular"),
-    ("fit g.asc -o o --tiles 64 --max-error 1 --refine surface", 2, "--tiles takes --refine flat"), ("fit g.asc -o p.xyz --tiles 64 --max-error 1", 5, "is a file: with --tiles the output is a folder"),
+    ("fit g.asc -o o --tiles 64 --max-error 1 --refine surface", 2, "--tiles takes --refine surface with --vertices or --ratio"), ("fit g.asc -o p.xyz --tiles 64 --max-error 1", 5, "is a file: with --tiles the output is a folder"),
     ("fit g.asc -o o.retalho --breaklines c.json", 2, "--breaklines goes with points"), ("fit p.xyz -o o.retalho --format compact", 2, "takes grids: its vertices are their cells"),
     ("fit g.asc -o o.retalho --format compact --gradients normals", 2, "fits the gradients: leave --gradients out"),
     ("fit g.asc -o o.retalho --format compact --cross-derivative cubic", 2, "takes --cross-derivative perpendicular"),

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -54,6 +55,11 @@ struct MadeTiles {
                      bool fitted = false) {
     write_raster(hills(131, 98, voids), dem);
     plan = plan_tiles(dem, {.size = 40, .max_error = max_error, .surface = surface, .fitted = fitted});
+  }
+  /// Fitted to a number of vertices; refined by the surface where an effort is given.
+  MadeTiles(bool voids, SurfaceKind surface, std::size_t vertices, std::optional<Effort> refine) {
+    write_raster(hills(131, 98, voids), dem);
+    plan = plan_tiles(dem, {.size = 40, .vertices = vertices, .surface = surface, .fitted = true, .refine = refine});
   }
 };
 

@@ -57,10 +57,16 @@ Vertices vertices_of(const TiledIndex& index, const TileEntry& entry, const Terr
 struct Case {
   bool voids;
   SurfaceKind surface;
-  bool fitted;
+  bool fitted, refined = false;
+
+  Made make() const { return refined ? Made(voids, surface, 1500, Effort::fast) : Made(voids, surface, 1.5, fitted); }
 };
 void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
-  *out << surface_name(c.surface) << (c.fitted ? " fitted" : "") << (c.voids ? " with voids" : "");
+  *out << surface_name(c.surface)
+       << (c.refined  ? " refined"
+           : c.fitted ? " fitted"
+                      : "")
+       << (c.voids ? " with voids" : "");
 }
 
 class Seams : public ::testing::TestWithParam<Case> {};
@@ -69,10 +75,12 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{false, SurfaceKind::clough_tocher, false}, Case{true, SurfaceKind::clough_tocher, false},
                       Case{false, SurfaceKind::powell_sabin, false}, Case{true, SurfaceKind::powell_sabin, false},
                       Case{false, SurfaceKind::clough_tocher, true}, Case{true, SurfaceKind::clough_tocher, true},
-                      Case{false, SurfaceKind::powell_sabin, true}, Case{true, SurfaceKind::powell_sabin, true}));
+                      Case{false, SurfaceKind::powell_sabin, true}, Case{true, SurfaceKind::powell_sabin, true},
+                      Case{false, SurfaceKind::clough_tocher, true, true},
+                      Case{true, SurfaceKind::clough_tocher, true, true}));
 
 TEST_P(Seams, HaveTheSameVerticesHeightsAndGradients) {
-  const Made made(GetParam().voids, GetParam().surface, 1.5, GetParam().fitted);
+  const Made made = GetParam().make();
   const TiledIndex index = make_tiles(made.plan, made.tiles, 2, false);
   ASSERT_EQ(index.tile_columns(), 4);
   ASSERT_EQ(index.tile_rows(), 3);
@@ -105,7 +113,7 @@ TEST_P(Seams, HaveTheSameVerticesHeightsAndGradients) {
 }
 
 TEST_P(Seams, AreSmooth) {
-  const Made made(GetParam().voids, GetParam().surface, 1.5, GetParam().fitted);
+  const Made made = GetParam().make();
   const TiledIndex index = make_tiles(made.plan, made.tiles, 1, false);
   std::vector<Terrain> tiles;
   for (const TileEntry& entry : index.tiles) tiles.push_back(load_tile(index, entry, made.tiles));
@@ -149,7 +157,7 @@ TEST_P(Joined, TilesAreOneTerrainWithinTheTolerance) {
 
 /// All patches of tiles in the whole grid's coordinates: what a reader of one tile or of two computes on a seam.
 TEST_P(Seams, HaveTheSamePolynomialsToTheLastBitInTheWholeGrid) {
-  const Made made(GetParam().voids, GetParam().surface, 1.5, GetParam().fitted);
+  const Made made = GetParam().make();
   make_tiles(made.plan, made.tiles, 2, false);
   const auto whole = std::get<Terrain>(load_model(made.tiles));
   const EdgeTable edges = build_edges(whole.tin);

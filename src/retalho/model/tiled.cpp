@@ -42,7 +42,7 @@ class Joiner {
     whole_.grid.cell_width = index.cell_width;
     whole_.grid.cell_height = index.cell_height;
     whole_.grid.valid = Mask(index.columns, index.rows, false);
-    whole_.tolerance = index.max_error;
+    whole_.tolerance = index.effort.empty() ? index.max_error : 0;  // which the flat triangulation alone kept
   }
 
   void add(const PlacedTile& placed, const std::string& file) {

@@ -34,6 +34,8 @@ struct TiledIndex {
   SurfaceKind surface = SurfaceKind::clough_tocher;
   double max_error = 0;          ///< of the flat triangulation at every valid cell
   bool fitted = false;           ///< heights and gradients by least squares (else interpolated)
+  std::string effort;            ///< refined by the surface's own error within the tiles, with this effort; empty: by
+                                 ///< the flat triangulation's
   std::size_t budget = 0;        ///< the vertices that were asked for, of which max_error follows; 0: none
   std::vector<TileEntry> tiles;  ///< row by row
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "retalho/core/error.h"
+#include "retalho/terrain/surface_refine.h"
 
 namespace retalho {
 namespace {
@@ -15,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "retalho-tiles";
 constexpr int kVersion = 1;
-constexpr const char *kInterpolated = "interpolate", *kFitted = "least-squares";
+constexpr const char *kInterpolated = "interpolate", *kFitted = "least-squares", *kRefined = "surface";
 constexpr int kMostCells = 1 << 30;  // a side
 
 Json json_of(const TileEntry& tile, const TiledIndex& index) {
@@ -99,6 +100,10 @@ std::string index_text(const TiledIndex& index) {
                  {"fit", index.fitted ? kFitted : kInterpolated},
                  {"max_error", index.max_error},
                  {"budget", index.budget}}}};
+  if (!index.effort.empty()) {
+    json["parameters"]["refine"] = kRefined;
+    json["parameters"]["effort"] = index.effort;
+  }
   json["tiles"] = Json::array();
   for (const TileEntry& tile : index.tiles) json["tiles"].push_back(json_of(tile, index));
   return json.dump(1) + "\n";
@@ -135,6 +140,12 @@ TiledIndex parse_frame(std::string_view text, const std::string& file) {
     if (fit != kInterpolated && fit != kFitted) refuse(file, fmt::format("an unknown fit '{}'", fit));
     index.fitted = fit == kFitted;
     index.budget = parameters.value("budget", std::size_t{0});
+    if (parameters.contains("refine")) {
+      if (parameters.at("refine") != kRefined)
+        refuse(file, fmt::format("an unknown refinement {}", parameters.at("refine").dump()));
+      index.effort = parameters.at("effort").get<std::string>();
+      if (!parse_effort(index.effort)) refuse(file, fmt::format("an unknown effort '{}'", index.effort));
+    }
     for (const Json& tile : json.at("tiles")) index.tiles.push_back(entry_of(tile, file));
   } catch (const nlohmann::json::exception& error) {
     refuse(file, error.what());

@@ -19,7 +19,7 @@ struct Candidate {
 };
 
 /// A vertex close to a long edge of the outline would leave a sliver there: then the nearest cell of that edge is
-/// meant instead (as Ruppert 1995 does with encroached segments). Cells are on the edge, as the outline is a box.
+/// meant instead (as Ruppert 1995 does with encroached segments). Of a slanting edge none is: cells are not on it.
 Cell keep_off_outline(const FitState& s, std::uint32_t t, Cell p) {
   constexpr double kWidest = -0.7;  // cosine of the widest angle under which `p` may see an edge of the outline
   const auto place = [&](Cell c) {
@@ -31,8 +31,10 @@ Cell keep_off_outline(const FitState& s, std::uint32_t t, Cell p) {
       const auto& v = s.mesh.triangles()[triangle];
       const Cell a = s.mesh.cell(v[(k + 1) % 3]), b = s.mesh.cell(v[(k + 2) % 3]);
       const Vec2 pa = place(a) - place(p), pb = place(b) - place(p);
+      if (s.on_frozen(a) && s.on_frozen(b)) continue;  // its cells are not to be had
       if (cross(pa, pb) == 0 || !(dot(pa, pb) < kWidest * norm(pa) * norm(pb))) continue;
       const bool level = greedy::row_of(a) == greedy::row_of(b);
+      if (!level && greedy::column_of(a) != greedy::column_of(b)) continue;
       return level ? greedy::cell_at(greedy::column_of(p), greedy::row_of(a))
                    : greedy::cell_at(greedy::column_of(a), greedy::row_of(p));
     }
@@ -63,7 +65,7 @@ Candidate candidate(const FitState& s, std::uint32_t t) {
     const Cell cell = cell_of(k);
     x += weight * greedy::column_of(cell);
     y += weight * greedy::row_of(cell);
-    if (std::abs(error) > largest && !is_corner(cell)) {
+    if (std::abs(error) > largest && !is_corner(cell) && !s.on_frozen(cell)) {
       largest = std::abs(error);
       worst = k;
     }
@@ -72,9 +74,10 @@ Candidate candidate(const FitState& s, std::uint32_t t) {
   if (!(sum > 0) || !(largest > 0)) return c;
   c.triangle = t;
   c.cell = greedy::cell_at(static_cast<int>(std::lround(x / sum)), static_cast<int>(std::lround(y / sum)));
-  if (is_corner(c.cell) || std::isnan(s.height(c.cell))) c.cell = cell_of(worst);
+  if (is_corner(c.cell) || s.on_frozen(c.cell) || std::isnan(s.height(c.cell))) c.cell = cell_of(worst);
   c.score = sum * largest;
   c.cell = keep_off_outline(s, t, c.cell);
+  if (s.on_frozen(c.cell)) return {};
   c.at = s.surface_at(t, c.cell);
   return c;
 }

@@ -27,6 +27,8 @@ struct FitState {
   std::vector<FitElement> elements;  ///< of each triangle, up to date after refresh()
   std::vector<float> cell_weights;   ///< empty: 1
   FitWeights weights;
+  /// Of the grid's sides (north, west, south, east): vertices on them stay, and no others come onto them.
+  std::array<bool, 4> frozen{};
 
   /// On the corners of the box of the valid cells.
   FitState(const Raster& raster, SurfaceKind kind, const Context& context);
@@ -38,6 +40,11 @@ struct FitState {
   /// What the surface has at the corners, folds included.
   CornerData corner_data(std::uint32_t t) const;
   bool is_folded(std::uint32_t vertex) const { return !folded.empty() && folded[vertex] != 0; }
+  bool on_frozen(CellMesh::Cell cell) const {
+    const int column = greedy::column_of(cell), row = greedy::row_of(cell);
+    return (frozen[0] && row == 0) || (frozen[1] && column == 0) || (frozen[2] && row == grid.rows - 1) ||
+           (frozen[3] && column == grid.columns - 1);
+  }
   double height(CellMesh::Cell cell) const { return grid.z[grid.cell(greedy::column_of(cell), greedy::row_of(cell))]; }
 
   /// Elements of the triangles that have changed since the last time; all of them where `all`.

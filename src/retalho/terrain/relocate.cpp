@@ -135,7 +135,7 @@ class Sweep {
   Move best_move(std::uint32_t v) const {
     const CellMesh& mesh = state_.mesh;
     Move move;
-    if (state_.pinned[v] != 0) return move;
+    if (state_.pinned[v] != 0 || state_.on_frozen(mesh.cell(v))) return move;
     CellMesh::Star star;
     mesh.star(v, star);
     double area = 0;
@@ -163,7 +163,7 @@ class Sweep {
       const Cell to = greedy::cell_at(static_cast<int>(column), static_cast<int>(row));
       if (std::find(tried.begin(), tried.end(), to) != tried.end()) continue;
       tried.push_back(to);
-      if (std::isnan(state_.height(to)) || !mesh.can_move(v, to)) continue;
+      if (std::isnan(state_.height(to)) || state_.on_frozen(to) || !mesh.can_move(v, to)) continue;
       const Vec2 at{static_cast<double>(column), -static_cast<double>(row)};
       if (!sound(v, star.triangles, at)) continue;
       attempt(to, at, folded);

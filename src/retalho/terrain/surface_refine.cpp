@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 #include "retalho/core/error.h"
 #include "retalho/terrain/crease_choice.h"
@@ -14,6 +15,7 @@
 #include "retalho/terrain/folded_surface.h"
 #include "retalho/terrain/least_squares.h"
 #include "retalho/terrain/report.h"
+#include "retalho/tin/grid_hull.h"
 
 namespace retalho {
 namespace {
@@ -84,6 +86,16 @@ Terrain refine_heights(const Raster& raster, const SurfaceRefineOptions& options
 
 }  // namespace
 
+const char* effort_name(Effort effort) {
+  return effort == Effort::fast ? "fast" : effort == Effort::best ? "best" : "normal";
+}
+
+std::optional<Effort> parse_effort(std::string_view name) {
+  for (const Effort effort : {Effort::fast, Effort::normal, Effort::best})
+    if (name == effort_name(effort)) return effort;
+  return std::nullopt;
+}
+
 SurfaceRefineOptions with_effort(SurfaceRefineOptions options, Effort effort) {
   const SurfaceRefineOptions normal;
   options.relocations = effort == Effort::fast ? 0 : effort == Effort::best ? 5 : normal.relocations;
@@ -114,6 +126,54 @@ void better(FitState& state, int relocations, int exchanges, const Context& cont
     share /= 2;
   }
   if (relocations + exchanges > 0) context.report("relocate", 1);
+}
+
+Terrain refine_inside(const Raster& raster, std::span<const SideVertex> sides, const std::array<bool, 4>& frozen,
+                      const SurfaceRefineOptions& options, const Context& context) {
+  check(options);
+  if (options.max_error > 0 || options.vertices == 0 || options.heights_only || options.creases ||
+      options.surface == SurfaceKind::powell_sabin)
+    throw UsageError(
+        "a grid with settled sides is refined to a number of vertices, by a linear or Clough-Tocher surface");
+  FitState state(raster, options.surface, CellMesh(greedy::hull_of_valid(raster)), context);
+  state.frozen = frozen;
+  if (options.surface != SurfaceKind::linear) {
+    state.weights.slope = options.slope_weight;
+    state.weights.fairness = options.fairness;
+  }
+  std::unordered_map<CellMesh::Cell, std::uint32_t> corners;
+  for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v) corners.emplace(state.mesh.cell(v), v);
+  for (const SideVertex& side : sides) {
+    const CellMesh::Cell cell = greedy::cell_at(side.column, side.row);
+    const Vec3 data = side.held ? Vec3{side.height - state.grid.reference, side.gradient.x * state.grid.unit,
+                                       side.gradient.y * state.grid.unit}
+                                : Vec3{state.height(cell), 0, 0};
+    const auto corner = corners.find(cell);
+    const auto v = corner != corners.end() ? corner->second : static_cast<std::uint32_t>(state.mesh.vertex_count());
+    if (corner == corners.end() && !state.insert(cell, 0, data))
+      throw UsageError(fmt::format("no vertex can be settled at cell ({}, {})", side.column, side.row));
+    state.data[v] = data;
+    if (side.held) state.pinned[v] = kHeldHeight | kHeldGradient;
+  }
+  state.refresh(context, true);
+  state.solve(kRoughSolve, context);
+  grow(state, options.vertices, options.growth, context);
+  better(state, options.relocations, options.exchanges, context);
+  state.solve(kFinalSolve, context);
+  Terrain terrain = to_terrain(state, raster, context);
+  // What is held has been through other units: here are the very numbers.
+  std::unordered_map<std::uint64_t, const SideVertex*> held;
+  const auto key = [](std::int64_t column, std::int64_t row) { return static_cast<std::uint64_t>(row << 32 | column); };
+  for (const SideVertex& side : sides)
+    if (side.held) held.emplace(key(side.column, side.row), &side);
+  for (std::size_t v = 0; v < terrain.tin.vertex_count(); ++v) {
+    const Vec2 at = cell_coordinates(terrain.tin.points[v], raster);
+    const auto found = held.find(key(std::llround(at.x), std::llround(-at.y)));
+    if (found == held.end()) continue;
+    terrain.tin.heights[v] = found->second->height;
+    if (!terrain.gradients.empty()) terrain.gradients[v] = found->second->gradient;
+  }
+  return terrain;
 }
 
 namespace {

@@ -2,8 +2,12 @@
 // for the flat triangulation under it (docs/algorithms/smooth-fit.md).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
 
 #include "retalho/core/context.h"
 #include "retalho/raster/raster.h"
@@ -13,6 +17,10 @@ namespace retalho {
 
 /// How long the vertices are moved about: none of it, some, or much. What it costs: docs/smooth.md.
 enum class Effort : std::uint8_t { fast, normal, best };
+
+/// "fast", "normal", "best", and back; nullopt for another word.
+const char* effort_name(Effort effort);
+std::optional<Effort> parse_effort(std::string_view name);
 
 struct SurfaceRefineOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
@@ -41,5 +49,21 @@ SurfaceRefineOptions with_effort(SurfaceRefineOptions options, Effort effort);
 /// must be given. Throws BadInput as refine_grid, UsageError for options out of range or that exclude each other,
 /// Interrupted.
 Terrain refine_surface(const Raster& raster, const SurfaceRefineOptions& options, const Context& context = {});
+
+/// A vertex on a side of the grid that is settled before the inside is refined.
+struct SideVertex {
+  int column = 0, row = 0;  ///< a valid cell
+  bool held = false;        ///< height and gradient stay as well, to the last bit; else they are fitted
+  double height = 0;
+  Vec2 gradient;  ///< height units per local unit; unused by linear surfaces
+};
+
+/// refine_surface to a budget with some of the grid's sides settled: `frozen` (north, west, south, east) sides have the
+/// vertices given, and no others but corners of the valid cells' hull; so grids that share a side agree along it. The
+/// outline is the hull of the valid cells, as refine_grid's. For linear and Clough-Tocher surfaces: an edge of a
+/// Powell-Sabin one depends on the triangles on both of its sides. Throws as refine_surface, and UsageError for options
+/// that need more than a budget.
+Terrain refine_inside(const Raster& raster, std::span<const SideVertex> sides, const std::array<bool, 4>& frozen,
+                      const SurfaceRefineOptions& options, const Context& context = {});
 
 }  // namespace retalho

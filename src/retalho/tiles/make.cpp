@@ -13,6 +13,7 @@
 #include "retalho/model/model.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
+#include "retalho/terrain/surface_refine.h"
 #include "retalho/tiles/jobs.h"
 #include "retalho/tiles/seam.h"
 #include "retalho/tiles/strips.h"
@@ -76,6 +77,37 @@ Terrain fitted(const TilePlan& plan, int tile_row, int tile_column, Terrain terr
   return fit_least_squares(std::move(terrain), read_tile(plan, tile_row, tile_column, context), options, context);
 }
 
+/// The vertices inside chosen by the surface, as many as the flat triangulation has. The sides where there are other
+/// tiles keep that one's vertices: what they are and what they store, the seam's own strip decides (tiles/strips.h).
+Terrain refined(const TilePlan& plan, int tile_row, int tile_column, const Tin& flat, const TilesAround& tiles,
+                const Context& context) {
+  const auto border = fit_seams(plan, tiles, context);
+  const Raster raster = read_tile(plan, tile_row, tile_column, context);
+  const std::array<bool, 4> frozen{tile_row > 0, tile_column > 0, tile_row + 1 < plan.frame.tile_rows(),
+                                   tile_column + 1 < plan.frame.tile_columns()};
+  std::vector<SideVertex> sides;
+  for (std::uint32_t v = 0; v < flat.vertex_count(); ++v) {
+    const GridCell cell = cell_of(plan.frame, {tiles[4].cells, &flat}, v);
+    SideVertex side;
+    side.column = static_cast<int>(cell.column) - tiles[4].cells.column;
+    side.row = static_cast<int>(cell.row) - tiles[4].cells.row;
+    const std::array<bool, 4> on{side.row == 0, side.column == 0, side.row == raster.rows - 1,
+                                 side.column == raster.columns - 1};
+    bool kept = false;
+    for (std::size_t k = 0; k < 4; ++k) kept = kept || (frozen[k] && on[k]);
+    if (!kept) continue;
+    sides.push_back(side);
+    if (const auto found = border.find(cell.key()); found != border.end()) {
+      sides.back().held = true;
+      sides.back().height = found->second.height;
+      sides.back().gradient = found->second.gradient;
+    }
+  }
+  const SurfaceRefineOptions options =
+      with_effort({.surface = plan.frame.surface, .vertices = flat.vertex_count()}, *parse_effort(plan.frame.effort));
+  return refine_inside(raster, sides, frozen, options, context);
+}
+
 Terrain surface_of(const TilePlan& plan, int tile_row, int tile_column, const NeighborNames& tins,
                    const std::string& folder, const Context& context) {
   Terrain flat = load_tin(folder, tins[4]);
@@ -92,6 +124,7 @@ Terrain surface_of(const TilePlan& plan, int tile_row, int tile_column, const Ne
   std::vector<PlacedTin> neighbors;
   for (std::size_t k = 0; k < 9; ++k)
     if (k != 4 && tiles[k].tin != nullptr) neighbors.push_back(tiles[k]);
+  if (!plan.frame.effort.empty()) return refined(plan, tile_row, tile_column, flat.tin, tiles, context);
   SurfaceOptions options;
   options.surface = plan.frame.surface;
   options.gradients = GradientKind::given;

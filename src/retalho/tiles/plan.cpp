@@ -54,6 +54,16 @@ TilePlan plan_tiles(const std::string& source, const TileOptions& options, const
     throw UsageError(fmt::format("ratio must be in (0, 1], not {}", options.ratio), {}, "--ratio");
   if ((options.max_error > 0) + (options.vertices > 0) + (options.ratio > 0) > 1)
     throw UsageError("tiles take one of max_error, vertices and ratio", {}, "--vertices");
+  if (options.refine && (options.max_error > 0 || (options.vertices == 0 && options.ratio == 0)))
+    throw UsageError("tiles are refined by their surface to a budget: give vertices or ratio, not max_error", {},
+                     "--refine");
+  if (options.refine && !options.fitted)
+    throw UsageError("a surface that is refined by its own error is fitted: leave interpolate out", {}, "--fit");
+  if (options.refine && options.surface == SurfaceKind::powell_sabin)
+    throw UsageError(
+        "tiles of a Powell-Sabin surface are not refined by it: its edges on a seam would depend on what both tiles "
+        "choose beside it. Take clough-tocher",
+        {}, "--surface");
   TilePlan plan{source, read, {}, options.ratio};
   const Raster place = inspect_raster(source, read);
   if (place.columns < 2 || place.rows < 2)
@@ -68,6 +78,7 @@ TilePlan plan_tiles(const std::string& source, const TileOptions& options, const
   plan.frame.max_error = options.max_error;
   plan.frame.fitted = options.fitted;
   plan.frame.budget = options.vertices;
+  if (options.refine) plan.frame.effort = effort_name(*options.refine);
   return plan;
 }
 
@@ -97,6 +108,7 @@ std::string tin_name(const TilePlan& plan, int tile_row, int tile_column, const 
 std::string tile_name(const TilePlan& plan, int tile_row, int tile_column, const NeighborNames& tins) {
   std::string key = parameters(plan, tile_row, tile_column) + surface_name(plan.frame.surface);
   if (plan.frame.fitted) key += " least-squares";
+  if (!plan.frame.effort.empty()) key += " refined " + plan.frame.effort;
   for (const std::string& tin : tins) key += "|" + tin;
   return fmt::format("tile-{}-{}-{}.retalho", tile_row, tile_column, content_digest(key));
 }

@@ -6,12 +6,14 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "retalho/core/context.h"
 #include "retalho/model/tiled.h"
 #include "retalho/raster/io.h"
+#include "retalho/terrain/surface_refine.h"
 
 namespace retalho {
 
@@ -23,6 +25,9 @@ struct TileOptions {
   SurfaceKind surface = SurfaceKind::clough_tocher;
   bool fitted = false;  ///< heights and gradients fitted to every cell (least_squares.h); else interpolated, with the
                         ///< gradients of the triangles' normals
+  /// The vertices inside a tile by the surface's own error (surface_refine.h), as many as the flat triangulation to the
+  /// budget's tolerance has; those on seams are the latter's. Needs fitted, a budget, and no Powell-Sabin surface.
+  std::optional<Effort> refine = {};
 };
 
 struct TilePlan {
