@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <tuple>
 
 #include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
@@ -68,6 +69,26 @@ TEST(RefinedTiles, AreTheSameBytesWhoeverMakesThem) {
             index_text(read_tiled_index(made.tiles)));
 }
 
+TEST(RefinedTiles, AnIndexThatSaysOtherwiseIsRefused) {
+  const Made made(false, SurfaceKind::linear, 900, Effort::fast);
+  const std::string text = index_text(made.plan.frame);
+  EXPECT_EQ(parse_frame(text).effort, "fast");
+  for (const auto& [from, to, words] :
+       {std::tuple{"\"refine\": \"surface\"", "\"refine\": \"luck\"", "an unknown refinement \"luck\""},
+        {"\"effort\": \"fast\"", "\"effort\": \"none\"", "an unknown effort 'none'"}}) {
+    std::string wrong = text;
+    const std::size_t at = wrong.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    wrong.replace(at, std::string(from).size(), to);
+    try {
+      parse_frame(wrong);
+      FAIL() << to;
+    } catch (const CannotRead& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(RefinedTiles, TakeWhatASeamCanKeep) {
   const Made made(false);
   const auto plan = [&](TileOptions options) {
@@ -107,6 +128,14 @@ TEST(RefineInside, KeepsItsSides) {
   }
   EXPECT_EQ(north, sides.size());
   EXPECT_THROW(refine_inside(raster, sides, {true}, {.max_error = 1}), UsageError);
+  sides.back().column = 60;
+  try {
+    refine_inside(raster, sides, {true}, {.vertices = 100});
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("no vertex can be settled at cell (60, 0)"), std::string::npos)
+        << error.what();
+  }
   EXPECT_THROW(refine_inside(raster, sides, {true}, {.surface = SurfaceKind::powell_sabin, .vertices = 100}),
                UsageError);
 }

@@ -144,14 +144,19 @@ Terrain refine_inside(const Raster& raster, std::span<const SideVertex> sides, c
   std::unordered_map<CellMesh::Cell, std::uint32_t> corners;
   for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v) corners.emplace(state.mesh.cell(v), v);
   for (const SideVertex& side : sides) {
+    const auto refuse = [&] {
+      throw UsageError(fmt::format("no vertex can be settled at cell ({}, {})", side.column, side.row));
+    };
+    if (side.column < 0 || side.row < 0 || side.column >= raster.columns || side.row >= raster.rows ||
+        !raster.valid(side.column, side.row))
+      refuse();
     const CellMesh::Cell cell = greedy::cell_at(side.column, side.row);
     const Vec3 data = side.held ? Vec3{side.height - state.grid.reference, side.gradient.x * state.grid.unit,
                                        side.gradient.y * state.grid.unit}
                                 : Vec3{state.height(cell), 0, 0};
     const auto corner = corners.find(cell);
     const auto v = corner != corners.end() ? corner->second : static_cast<std::uint32_t>(state.mesh.vertex_count());
-    if (corner == corners.end() && !state.insert(cell, 0, data))
-      throw UsageError(fmt::format("no vertex can be settled at cell ({}, {})", side.column, side.row));
+    if (corner == corners.end() && !state.insert(cell, 0, data)) refuse();
     state.data[v] = data;
     if (side.held) state.pinned[v] = kHeldHeight | kHeldGradient;
   }
