@@ -15,13 +15,10 @@ void write_conics(const Program& program, const Terrain& terrain, std::vector<do
                   const Context& context) {
   const Stopwatch watch;
   ConicSet set = trace_conics(terrain, std::move(levels), context);
+  move_to_crs(set, terrain.georef);
   CurveDocument document;
   std::size_t closed = 0, segments = 0;
-  for (ConicLine& line : set.lines) {
-    for (Vec3& p : line.curve.points) {
-      const Vec2 place = terrain.georef.to_crs({p.x, p.y});
-      p = {place.x, place.y, 0};
-    }
+  for (const ConicLine& line : set.lines) {
     closed += line.curve.closed ? 1 : 0;
     segments += line.curve.segment_count();
     document.curves.push_back(to_spec(line.curve));

@@ -18,7 +18,7 @@ constexpr std::size_t kLeastVertices = 3;
 const std::vector<std::string> kSurfaces{"linear", "powell-sabin", "clough-tocher"};
 const std::vector<std::string> kGradients{"normals", "quadratic", "network"};
 const std::vector<std::string> kCrossDerivatives{"perpendicular", "cubic"};
-const std::vector<std::string> kFits{"interpolate", "least-squares", "z-only"};
+const std::vector<std::string> kFits(kFitNames.begin(), kFitNames.end());
 const std::vector<std::string> kRefinements{"flat", "surface"};
 const std::vector<std::string> kFormats{"exact", "compact"};
 const std::vector<std::string> kEfforts{"fast", "normal", "best"};
@@ -218,32 +218,6 @@ bool refines_surface(const SurfaceFlags& flags, const BudgetFlags& budget, bool 
 
 Effort resolve_effort(const SurfaceFlags& flags) {
   return flags.effort.empty() ? Effort::normal : static_cast<Effort>(choose("--effort", flags.effort, kEfforts));
-}
-
-Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context) {
-  Terrain terrain = make_terrain(std::move(tin), raster, surface, context);
-  if (fit == FitKind::interpolate) return terrain;
-  return fit_least_squares(std::move(terrain), raster, {.heights_only = fit == FitKind::z_only}, context);
-}
-
-ModelReport facts_of(const Terrain& terrain) {
-  ModelReport report;
-  report.surface = surface_name(terrain.kind);
-  report.gradients = gradient_name(terrain.gradient_kind);
-  if (terrain.kind == SurfaceKind::clough_tocher)
-    report.cross_derivative = kCrossDerivatives[static_cast<std::size_t>(terrain.cross_derivative)];
-  report.vertices = terrain.tin.vertex_count();
-  report.triangles = terrain.tin.triangle_count();
-  report.coefficients = coefficient_count(terrain);
-  report.numbers = number_count(terrain);
-  report.tolerance = terrain.tolerance;
-  return report;
-}
-
-std::string kind_text(const ModelReport& report) {
-  if (report.surface == kSurfaces[0]) return report.surface;
-  const bool cubic = report.cross_derivative == kCrossDerivatives[1];
-  return report.surface + (cubic ? " cubic " : " ") + report.gradients;
 }
 
 nlohmann::ordered_json to_json(const ModelReport& report) {

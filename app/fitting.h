@@ -8,6 +8,7 @@
 
 #include "program.h"
 #include "retalho/model/compact.h"
+#include "retalho/model/comparison.h"
 #include "retalho/raster/raster.h"
 #include "retalho/terrain/fit.h"
 #include "retalho/terrain/least_squares.h"
@@ -51,9 +52,7 @@ void add_surface_flags(CLI::App& command, SurfaceFlags& flags);
 /// Throws UsageError with the choices.
 SurfaceOptions resolve(const SurfaceFlags& flags, bool from_points);
 
-/// How the vertices get their data.
-enum class FitKind : std::uint8_t { interpolate, least_squares, z_only };
-/// Throws UsageError with the choices, and for what does not go together.
+/// --fit: how the vertices get their data. Throws UsageError with the choices, and for what does not go together.
 FitKind resolve_fit(const SurfaceFlags& flags, bool from_points);
 /// Are the vertices chosen by the surface's own error (--refine surface, or nothing that speaks against it)? Throws as
 /// resolve_fit.
@@ -69,24 +68,6 @@ bool compact_format(const SurfaceFlags& flags);
 /// Which surfaces a compact file may hold: --surface auto gives several, of which the smallest file counts. Throws
 /// UsageError for what does not go together.
 std::vector<CompactOptions> compact_options(const SurfaceFlags& flags, bool from_points);
-/// The surface on a grid's triangulation, fitted as asked for.
-Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context);
-
-/// One model with what is known of it.
-struct ModelReport {
-  std::string name;  ///< file, or kind
-  std::string surface, gradients, cross_derivative;
-  std::size_t vertices = 0, triangles = 0, coefficients = 0, numbers = 0, bytes = 0;
-  double tolerance = 0;
-  ErrorReport errors;
-  bool has_slope = true;
-  bool refined = false;  ///< by its own error: the tolerance is the surface's, not the flat triangulation's
-};
-/// Everything but name, bytes and errors.
-ModelReport facts_of(const Terrain& terrain);
-
-/// "clough-tocher quadratic", "clough-tocher cubic quadratic", "linear".
-std::string kind_text(const ModelReport& report);
 
 /// The keys of docs/cli.md, in its order.
 nlohmann::ordered_json to_json(const ModelReport& report);

@@ -6,12 +6,11 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "retalho/core/error.h"
 #include "retalho/render/color.h"
 #include "retalho/render/image.h"
-#include "retalho/terrain/evaluate.h"
+#include "retalho/visibility/model_map.h"
 
 namespace retalho::app {
 namespace {
@@ -48,16 +47,7 @@ VisibilityErrors::VisibilityErrors(const Program& program, const VisibilityFlags
 }
 
 void VisibilityErrors::add(const Terrain& terrain, const std::string& name, const Context& context) {
-  Raster heights = raster_;
-  const Vec2 first = terrain.georef.to_local(raster_.georef.to_crs({0, 0}));
-  const Vec2 step{raster_.cell_width / raster_.georef.scale_x * terrain.georef.scale_x,
-                  raster_.cell_height / raster_.georef.scale_y * terrain.georef.scale_y};
-  std::vector<double> z(raster_.cells());
-  TerrainEvaluator(terrain, context).grid_values(first, step, raster_.columns, raster_.rows, z, {}, context);
-  for (std::size_t i = 0; i < z.size(); ++i)
-    if (std::isnan(raster_.at(i))) z[i] = std::numeric_limits<double>::quiet_NaN();
-  heights.heights = std::move(z);
-  std::vector<float> map = intervisibility_map(heights, options_, context);
+  std::vector<float> map = model_intervisibility(terrain, raster_, options_, context);
   differences_.push_back(compare_maps(map, own_));
   if (!flags_.maps.empty()) {
     for (std::size_t i = 0; i < map.size(); ++i) map[i] -= own_[i];

@@ -1,10 +1,10 @@
 // retalho compare: models, or the kinds of surface on one triangulation, against the grid that they stand for.
 #include <fmt/format.h>
 
-#include "baselines.h"
 #include "fitting.h"
 #include "inputs.h"
 #include "retalho/core/error.h"
+#include "retalho/model/baselines.h"
 #include "retalho/model/model.h"
 #include "retalho/model/tiled.h"
 #include "retalho/tiles/reader.h"
@@ -25,45 +25,15 @@ struct Options {
   TileMemoryFlag tile_memory;
 };
 
-/// Every kind on the same TIN: the paper's gradients first, then the better ones.
-const std::vector<SurfaceFlags>& kinds() {
-  static const std::vector<SurfaceFlags> all = [] {
-    std::vector<SurfaceFlags> list;
-    const auto estimated = [&](const char* surface, const char* gradients, const char* cross = "perpendicular") {
-      list.push_back({.surface = surface, .gradients = gradients, .cross_derivative = cross, .refine = "flat"});
-    };
-    const auto fitted = [&](const char* surface, const char* fit) {
-      list.push_back({.surface = surface, .fit = fit, .refine = "flat"});
-    };
-    estimated("linear", "normals");
-    for (const char* surface : {"powell-sabin", "clough-tocher"})
-      for (const char* gradients : {"normals", "quadratic", "network"}) estimated(surface, gradients);
-    estimated("clough-tocher", "quadratic", "cubic");
-    fitted("linear", "least-squares");
-    for (const char* surface : {"powell-sabin", "clough-tocher"})
-      for (const char* fit : {"z-only", "least-squares"}) fitted(surface, fit);
-    return list;
-  }();
-  return all;
-}
-
-std::vector<ModelReport> compare_kinds(const Program& program, const Options& options, const Raster& raster,
-                                       const RasterSummary& summary, VisibilityErrors* sight, const Context& context) {
+std::vector<ModelReport> compare_fits(const Program& program, const Options& options, const Raster& raster,
+                                      const RasterSummary& summary, VisibilityErrors* sight, const Context& context) {
   const double range = summary.valid > 0 ? summary.maximum - summary.minimum : 0;
   const Budget budget = resolve(program, options.budget, summary.valid, range);
   const Tin tin = refine_tin(raster, {budget.max_error, budget.vertices}, context);
-  std::vector<ModelReport> reports;
-  for (const SurfaceFlags& kind : kinds()) {
-    const FitKind fit = resolve_fit(kind, false);
-    Terrain terrain = make_fitted(tin, raster, resolve(kind, false), fit, context);
-    terrain.tolerance = budget.max_error;
-    ModelReport report = facts_of(terrain);
-    report.name = kind_text(report) + (fit == FitKind::interpolate ? "" : " " + kind.fit);
-    report.bytes = encode_model(terrain).size();
-    report.errors = assess(terrain, raster, budget.max_error, context);
-    if (sight != nullptr) sight->add(terrain, report.name, context);
-    reports.push_back(report);
-  }
+  CompareMore more;
+  if (sight != nullptr)
+    more = [&](const Terrain& terrain, const ModelReport& report) { sight->add(terrain, report.name, context); };
+  std::vector<ModelReport> reports = compare_kinds(tin, raster, budget.max_error, more, context);
   if (options.baselines)
     for (ModelReport& report : smooth_rivals(tin.vertex_count(), raster, context)) reports.push_back(std::move(report));
   return reports;
@@ -194,7 +164,7 @@ void run(const Program& program, const Options& options) {
     raster = load_grid(program, options.dem, options.grid, summary, context, need);
     if (options.visibility.radius) sight.emplace(program, options.visibility, *raster, context);
     VisibilityErrors* maps = sight ? &*sight : nullptr;
-    reports = fitted ? compare_kinds(program, options, *raster, summary, maps, context)
+    reports = fitted ? compare_fits(program, options, *raster, summary, maps, context)
                      : compare_models(options, *raster, maps, context);
   }
   VisibilityErrors* seen = sight ? &*sight : nullptr;

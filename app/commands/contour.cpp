@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "checks.h"
-#include "contour_compare.h"
 #include "contour_conics.h"
 #include "contour_map.h"
 #include "contour_surface.h"
 #include "retalho/core/error.h"
 #include "retalho/level/write_vector.h"
+#include "retalho/render/surface_comparison.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -58,8 +58,6 @@ std::vector<double> levels_of(const Options& options, const TracedSurface& surfa
 /// The picture of --compare-surfaces; returns the names of the surfaces in it.
 std::vector<std::string> compare(const Program& program, const Options& options, const Context& context) {
   SurfaceComparison comparison;
-  comparison.output = options.compare;
-  comparison.zoom = options.zoom;
   const VectorOptions file{program.overwrite, options.index_every, options.base, options.interval};
   const auto prepare = [&](double low, double high, double cell) {
     TracedSurface range;
@@ -70,6 +68,10 @@ std::vector<std::string> compare(const Program& program, const Options& options,
       comparison.index.push_back(is_index_level(comparison.levels, static_cast<int>(k), file));
     comparison.tolerance = options.tolerance > 0 ? options.tolerance : 0.02 * cell;
   };
+  const auto write = [&](const ComparedSurfaces& compared) {
+    write_picture(compared.picture, options.compare, program.overwrite);
+    return compared.names;
+  };
   if (is_model_file(options.surface.input))
     throw UsageError("a model has its surface already: --compare-surfaces is for grids and points", {},
                      "--compare-surfaces");
@@ -79,7 +81,7 @@ std::vector<std::string> compare(const Program& program, const Options& options,
         triangulate(program, cloud, options.surface.input, options.surface.breaklines, nullptr, context);
     const auto [low, high] = std::minmax_element(made.tin.heights.begin(), made.tin.heights.end());
     prepare(*low, *high, mean_edge(made.tin));
-    return compare_point_surfaces(program, made, cloud.georef, comparison, context);
+    return write(compare_point_surfaces(made, cloud.georef, comparison, context));
   }
   RasterSummary summary;
   const Raster raster = load_grid(program, options.surface.input, options.surface.grid, summary, context);
@@ -90,7 +92,7 @@ std::vector<std::string> compare(const Program& program, const Options& options,
   const RasterSummary shown = summarize(part);
   if (shown.valid == 0) throw BadInput("the part that is shown has no data: choose --zoom 0", options.surface.input);
   prepare(shown.minimum, shown.maximum, std::min(part.cell_width, part.cell_height));
-  return compare_grid_surfaces(program, part, comparison, context);
+  return write(compare_grid_surfaces(part, comparison, context));
 }
 
 nlohmann::ordered_json singular_json(const ContourSet& set, const Georef& georef) {

@@ -11,9 +11,8 @@
 #include "retalho/core/error.h"
 #include "retalho/curve/bspline.h"
 #include "retalho/curve/convert.h"
+#include "retalho/curve/curve_files.h"
 #include "retalho/curve/edit.h"
-#include "retalho/curve/flatten.h"
-#include "retalho/curve/vector_file.h"
 #include "retalho/level/implicit_graph.h"
 
 namespace retalho::app {
@@ -22,47 +21,17 @@ namespace {
 std::vector<CurveSpec> read_specs(const std::string& file, const Program& program) {
   if (!std::filesystem::exists(file)) throw CannotRead(fmt::format("'{}': no such file", file), file);
   check_file_need("reading the curves of", kCurveFile, file);
-  if (file.ends_with(".json")) return read_curves(file).curves;
-  std::vector<CurveSpec> specs;
-  if (file.ends_with(".svg")) {
-    int transforms = 0;
-    for (const Curve& curve : read_svg(file, &transforms)) specs.push_back(to_spec(curve));
-    if (transforms > 0)
-      program.say(fmt::format(
-          "'{}': {} elements stand under a transform, which is not applied: the numbers are taken as they are", file,
-          transforms));
-    return specs;
-  }
-  for (const VectorLine& line : read_vector_lines(file)) {
-    CurveSpec spec;
-    spec.kind = CurveKind::polyline;
-    spec.name = line.name;
-    spec.dimension = line.dimension;
-    spec.closed = line.closed;
-    spec.points = line.points;
-    specs.push_back(std::move(spec));
-  }
+  int transforms = 0;
+  std::vector<CurveSpec> specs = read_curve_specs(file, &transforms);
+  if (transforms > 0)
+    program.say(fmt::format(
+        "'{}': {} elements stand under a transform, which is not applied: the numbers are taken as they are", file,
+        transforms));
   return specs;
 }
 
 [[noreturn]] void at_place(const Error& error, const std::string& where) {
   throw BadInput(fmt::format("{}: {}", where, error.what()), error.file(), where);
-}
-
-/// A polyline of straight segments from each line of a flattened curve.
-Curve straight(const FlatCurve& flat, int dimension) {
-  Curve out;
-  out.dimension = dimension;
-  out.closed = flat.closed;
-  std::size_t next = 1;
-  for (std::size_t i = 0; i + 1 < flat.points.size(); ++i) {
-    if (next < flat.starts.size() && flat.starts[next] == i + 1) {
-      ++next;
-      continue;
-    }
-    out.append(std::array{flat.points[i], flat.points[i + 1]});
-  }
-  return out;
 }
 
 std::vector<Vec3> lifted(const std::vector<Vec2>& points) {
@@ -75,21 +44,7 @@ std::vector<Vec3> lifted(const std::vector<Vec2>& points) {
 /// Lines of any form, for vector files and for the JSON of curves that have no exact one.
 std::vector<VectorLine> lines_of(const NamedCurve& c, double tolerance, const Context& context) {
   std::vector<VectorLine> lines;
-  if (c.curve) {
-    const double t = tolerance > 0 ? tolerance : 1e-4 * std::max(control_size(c.curve->points), 1e-300);
-    const FlatCurve flat = flatten(*c.curve, t, context);
-    for (std::size_t k = 0; k < flat.starts.size(); ++k) {
-      const std::size_t from = flat.starts[k],
-                        to = k + 1 < flat.starts.size() ? flat.starts[k + 1] : flat.points.size();
-      VectorLine line{c.spec.name,
-                      {flat.points.begin() + static_cast<std::ptrdiff_t>(from),
-                       flat.points.begin() + static_cast<std::ptrdiff_t>(to)},
-                      c.curve->dimension,
-                      flat.closed};
-      if (line.closed) line.points.pop_back();
-      lines.push_back(std::move(line));
-    }
-  }
+  if (c.curve) lines = vector_lines(*c.curve, c.spec.name, tolerance, context);
   if (c.graph)
     for (const auto& points : c.graph->lines) lines.push_back({c.spec.name, lifted(points), 2, false});
   if (c.level)
@@ -147,13 +102,7 @@ void write_json(const std::vector<NamedCurve>& curves, const std::string& path, 
   for (const NamedCurve& c : curves) {
     if (work.flatten > 0 || (!c.curve && !work.convert.empty())) {
       for (const VectorLine& line : lines_of(c, work.flatten, context)) {
-        CurveSpec spec;
-        spec.kind = CurveKind::polyline;
-        spec.name = line.name;
-        spec.dimension = line.dimension;
-        spec.closed = line.closed;
-        spec.points = line.points;
-        document.curves.push_back(std::move(spec));
+        document.curves.push_back(to_spec(line));
       }
     } else if (c.curve && !work.convert.empty()) {
       document.curves.push_back(converted(c, work.convert));
@@ -168,58 +117,14 @@ void write_json(const std::vector<NamedCurve>& curves, const std::string& path, 
   write_file(path, to_json(document), overwrite);
 }
 
-void add_to_panel(PicturePanel& panel, const NamedCurve& c, const CurveWork& work, Rgb color) {
-  const Stroke stroke{color, 1.8, false, false};
-  if (c.graph) draw_explicit(panel, *c.graph, stroke);
-  if (c.level) draw_implicit(panel, *c.level, stroke);
-  if (!c.curve) return;
-  const Curve plane = project(*c.curve, work.view);
-  if (work.comb) draw_comb(panel, plane, work.comb_scale, {120, 120, 200});
-  if (work.control) draw_control_polygon(panel, plane, {130, 130, 130});
-  if (work.flatten > 0)
-    draw_curve(panel, straight(flatten(plane, work.flatten), 2), stroke);
-  else
-    draw_curve(panel, plane, stroke);
-  if (work.tangents) draw_tangents(panel, plane, 1.0 / 3, {0, 120, 60});
-  if (work.casteljau) draw_casteljau(panel, plane, *work.casteljau);
-  if (work.joins) draw_joins(panel, plane, color);
-  if (work.points && !c.spec.points.empty()) {
-    Curve given;
-    given.dimension = c.spec.dimension;
-    for (const Vec3& p : c.spec.points) given.append(std::array{p});
-    for (const Vec3& p : project(given, work.view).points) panel.dots.push_back({{p.x, p.y}, 3.2, {0, 0, 0}, false});
-  }
-}
-
-void draw(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite) {
-  CurvePicture picture;
-  picture.panel_width = work.width;
-  picture.panel_height = work.height;
-  PicturePanel panel;
-  panel.title = work.title;
-  panel.axes = work.axes;
-  panel.stretch = work.stretch;
-  for (std::size_t i = 0; i < curves.size(); ++i) add_to_panel(panel, curves[i], work, curve_color(i));
-  fit_panel(panel);
-  for (const NamedCurve& c : curves) {
-    if (c.spec.kind == CurveKind::implicit_form && curves.size() == 1)
-      panel.low = {c.spec.box[0], c.spec.box[1]}, panel.high = {c.spec.box[2], c.spec.box[3]};
-    if (c.graph && curves.size() == 1)
-      panel.low.y = c.graph->low - 0.06 * (c.graph->high - c.graph->low),
-      panel.high.y = c.graph->high + 0.06 * (c.graph->high - c.graph->low);
-  }
-  if (!work.window.empty()) {
-    panel.low = {work.window[0], work.window[1]};
-    panel.high = {work.window[2], work.window[3]};
-    if (!(panel.low.x < panel.high.x && panel.low.y < panel.high.y))
-      throw UsageError("--window: xmin < xmax and ymin < ymax are needed", {}, "--window");
-  }
-  picture.panels.push_back(std::move(panel));
-  if (work.hodograph)
-    for (std::size_t i = 0; i < curves.size(); ++i)
-      if (curves[i].curve)
-        picture.panels.push_back(hodograph_panel(project(*curves[i].curve, work.view), curve_color(i)));
-  write_picture(picture, path, overwrite);
+void draw(const std::vector<NamedCurve>& curves, const std::string& path, const CurveWork& work, bool overwrite,
+          const Context& context) {
+  std::vector<SheetCurve> drawn;
+  drawn.reserve(curves.size());
+  for (const NamedCurve& c : curves)
+    drawn.push_back({c.curve ? &*c.curve : nullptr, c.graph ? &*c.graph : nullptr, c.level ? &*c.level : nullptr,
+                     c.spec.points, c.spec.dimension, c.spec.box});
+  write_picture(curve_sheet(drawn, work, context), path, overwrite);
 }
 
 }  // namespace
@@ -270,7 +175,7 @@ void write_curves(const std::vector<NamedCurve>& curves, const std::string& path
   context.check();
   if (path.ends_with(".json")) return write_json(curves, path, work, overwrite, context);
   if (path.ends_with(".svg") || path.ends_with(".pdf") || path.ends_with(".png"))
-    return draw(curves, path, work, overwrite);
+    return draw(curves, path, work, overwrite, context);
   std::vector<VectorLine> lines;
   for (const NamedCurve& c : curves)
     for (VectorLine& line : lines_of(c, work.flatten, context)) lines.push_back(std::move(line));

@@ -7,24 +7,15 @@
 #include "retalho/curve/document.h"
 #include "retalho/curve/explicit.h"
 #include "retalho/level/implicit_curve.h"
-#include "retalho/render/curve_drawing.h"
+#include "retalho/render/curve_sheet.h"
 
 namespace retalho::app {
 
-struct CurveWork {
-  double flatten = 0;
+struct CurveWork : CurveSheetOptions {
   std::string convert;
   int degree = 0;
   bool reverse = false, crossings = false;
   std::vector<double> cut, closest, at;
-  bool control = false, tangents = false, comb = false, hodograph = false, joins = false, points = false, axes = false,
-       stretch = false;
-  double comb_scale = 0;
-  std::optional<double> casteljau;
-  std::vector<double> window;
-  std::string title;
-  CurveView view = CurveView::iso;
-  int width = 640, height = 480;
   int depth = 9;
 };
 

@@ -51,27 +51,17 @@ void complete_normals(const Program& program, PointCloud& cloud, int neighbours,
   program.say("warning: " + warnings.back());
 }
 
-/// Which parts of the surface are kept. Throws UsageError when that is none.
-std::vector<char> chosen_parts(const Options& options, const SurfaceParts& found) {
-  std::vector<char> keep(found.parts.size(), 1);
-  for (std::size_t n = 0; n < keep.size(); ++n)
-    if (n >= options.parts.value_or(keep.size()) || found.parts[n].points < options.part_points.value_or(0))
-      keep[n] = 0;
-  if (!keep.empty() && keep[0] == 0)
-    throw UsageError(fmt::format("no part of the surface has {} points near it, the largest has {}: ask for fewer",
-                                 *options.part_points, found.parts[0].points),
-                     {}, "--part-points");
-  return keep;
-}
-
 /// Leaves out the parts that are not asked for, and says how many there are. The surface is changed only where it will
 /// be written (`as_model`).
-nlohmann::ordered_json choose_parts(const Program& program, const Options& options, const PointCloud& cloud,
-                                    bool as_model, TetraQuad& surface, TriangleMesh& mesh, TetraQuadFitReport& report,
-                                    const Context& context) {
+nlohmann::ordered_json leave_out_parts(const Program& program, const Options& options, const PointCloud& cloud,
+                                       bool as_model, TetraQuad& surface, TriangleMesh& mesh,
+                                       TetraQuadFitReport& report, const Context& context) {
   const TetraQuadField field(surface);
   const SurfaceParts found = find_parts(mesh, field, cloud, context);
-  std::vector<char> keep = chosen_parts(options, found);
+  PartChoice choice;
+  choice.most = options.parts.value_or(choice.most);
+  choice.points = options.part_points.value_or(0);
+  std::vector<char> keep = choose_parts(found, choice);
   const auto unwanted = std::count(keep.begin(), keep.end(), 0);
   if (unwanted > 0 && as_model)
     surface = without_tetrahedra(surface, tetrahedra_left_out(mesh, field, found, keep), &report);
@@ -172,7 +162,8 @@ void run(const Program& program, const Options& options) {
   TetraQuadMeshNotes notes;
   TriangleMesh mesh = mesh_tetraquad(TetraQuadField(surface), {.tolerance = options.tolerance}, &notes, context);
   const bool as_model = std::filesystem::path(options.output).extension() == ".retalho";
-  const nlohmann::ordered_json parts = choose_parts(program, options, cloud, as_model, surface, mesh, report, context);
+  const nlohmann::ordered_json parts =
+      leave_out_parts(program, options, cloud, as_model, surface, mesh, report, context);
   const MeshTopology topology = topology_of(mesh);
   const double seconds = watch.seconds();
   if (options.tolerance > 0 && notes.deviation > options.tolerance)

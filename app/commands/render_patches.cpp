@@ -5,7 +5,7 @@
 namespace retalho::app {
 
 PatchStyle parse_patch_style(const std::string& option, const std::string& word) {
-  static const std::vector<std::string> styles = {"shaded", "lines", "isophotes", "zebra", "gaussian", "mean"};
+  static const std::vector<std::string> styles(kPatchStyles.begin(), kPatchStyles.end());
   return static_cast<PatchStyle>(choose(option, word, styles));
 }
 

@@ -2,31 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
-
 #include "retalho/core/error.h"
 #include "retalho/render/tetraquad_picture.h"
 
 namespace retalho::app {
-
-CutPlane parse_cut(const std::string& text, const Georef& georef) {
-  CutPlane cut;
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto number = text.size() > 2 ? std::from_chars(text.data() + 2, end, value) : std::from_chars_result{};
-  const bool axis = !text.empty() && text[0] >= 'x' && text[0] <= 'z';
-  if (!axis || text.size() < 3 || (text[1] != '<' && text[1] != '>') || number.ec != std::errc{} || number.ptr != end ||
-      !std::isfinite(value))
-    throw UsageError(fmt::format("--cut: '{}' is not an axis, < or >, and a number, such as 'x<0.5'", text), {},
-                     "--cut");
-  if (text[0] == 'x') value = georef.to_local({value, 0}).x;
-  if (text[0] == 'y') value = georef.to_local({0, value}).y;
-  const double sign = text[1] == '<' ? 1 : -1;
-  cut.normal = {text[0] == 'x' ? sign : 0, text[0] == 'y' ? sign : 0, text[0] == 'z' ? sign : 0};
-  cut.offset = sign * value;
-  return cut;
-}
 
 void add_tetraquad_flags(CLI::App& command, TetraQuadFlags& flags) {
   command.add_option("--up", flags.up, "TetraQuad models: the axis that points up, x, y or z (default z)")

@@ -19,9 +19,6 @@ struct TetraQuadFlags {
 };
 void add_tetraquad_flags(CLI::App& command, TetraQuadFlags& flags);
 
-/// "x<0.5" or "z>3": what is kept. Throws UsageError.
-CutPlane parse_cut(const std::string& text, const Georef& georef);
-
 /// One panel, without a caption. Throws UsageError for a cut that cannot be read.
 Image draw_panel(const TetraQuad& surface, const TetraQuadFlags& flags, std::optional<double> from, double elevation,
                  int width, int height, const Context& context);

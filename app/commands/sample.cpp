@@ -14,6 +14,7 @@
 #include "retalho/terrain/evaluate.h"
 #include "retalho/terrain/quantities.h"
 #include "retalho/tiles/reader.h"
+#include "retalho/tiles/sampled_raster.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -136,42 +137,10 @@ Terrain frame_of(const TiledIndex& index) {
   return frame;
 }
 
-double quantity(What what, double height_here, Vec2 gradient) {
-  if (what == height || std::isnan(height_here)) return height_here;
-  return what == slope ? slope_degrees(gradient) : aspect_degrees(gradient);
-}
-
-/// Rows are made as they are written, from the tiles that they need. Returns how many cells have data.
-std::size_t write_tiles(const Options& options, TileReader& reader, const Target& target, What what,
-                        const WriteOptions& how, const Context& context) {
-  std::size_t valid = 0;
-  std::vector<double> heights;
-  std::vector<Vec2> gradients;
-  write_rows(
-      target.raster, options.output, how,
-      [&](int first, int count, std::span<float> out) {
-        const SampledRows rows{target.origin, target.step, target.raster.columns, first, count};
-        heights.assign(out.size(), kNan);
-        if (what == curvature) {
-          for (std::size_t k = 0; k < out.size(); ++k) {
-            const auto column = static_cast<int>(k % static_cast<std::size_t>(rows.columns)),
-                       row = first + static_cast<int>(k / static_cast<std::size_t>(rows.columns));
-            const auto jet = reader.jet({rows.origin.x + column * rows.step.x, rows.origin.y - row * rows.step.y});
-            if (jet) heights[k] = mean_curvature(*jet);
-          }
-        } else {
-          gradients.assign(what == height ? 0 : out.size(), {});
-          sample_rows(reader, rows, heights, gradients, context);
-          for (std::size_t k = 0; what != height && k < heights.size(); ++k)
-            heights[k] = quantity(what, heights[k], gradients[k]);
-        }
-        for (std::size_t k = 0; k < out.size(); ++k) {
-          out[k] = static_cast<float>(heights[k]);
-          valid += std::isnan(heights[k]) ? 0 : 1;
-        }
-      },
-      context);
-  return valid;
+SampledQuantity sampled(What what) {
+  if (what == slope) return SampledQuantity::slope;
+  if (what == aspect) return SampledQuantity::aspect;
+  return what == curvature ? SampledQuantity::curvature : SampledQuantity::height;
 }
 
 /// Where `--like` says, without its heights.
@@ -217,7 +186,8 @@ void sample_raster(const Program& program, const Options& options) {
     const Terrain frame = frame_of(reader.index());
     Target target = options.like.empty() ? target_of_model(program, options, frame) : target_like_place(options, frame);
     if (what != height) target.raster.height_unit.clear();
-    const std::size_t valid = write_tiles(options, reader, target, what, how, context);
+    const SampledRaster raster{target.raster, target.origin, target.step};
+    const std::size_t valid = write_sampled(reader, raster, sampled(what), options.output, how, context);
     return say_sampled(program, options, target, what, valid);
   }
   const Terrain terrain = load_terrain(options.model);

@@ -11,6 +11,7 @@
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/model/tiled.h"
+#include "retalho/raster/part.h"
 #include "retalho/terrain/evaluate.h"
 #include "retalho/visibility/intervisibility.h"
 #include "retalho/visibility/line_of_sight.h"
@@ -125,40 +126,20 @@ void finish(const Program& program, const Options& options, Raster& raster, std:
   program.print(words);
 }
 
-/// Keeps the middle cell of each stride x stride block, as one cell of that size.
-std::vector<float> thin(Raster& raster, const std::vector<float>& map, int stride) {
-  const int first = stride / 2;
-  const Vec2 origin = raster.georef.to_crs(raster.centre(first, first));
-  std::vector<float> kept;
-  int rows = 0;
-  for (int row = first; row < raster.rows; row += stride, ++rows)
-    for (int column = first; column < raster.columns; column += stride) kept.push_back(map[raster.index(column, row)]);
-  raster.columns = static_cast<int>(kept.size()) / rows;
-  raster.rows = rows;
-  raster.cell_width *= stride;
-  raster.cell_height *= stride;
-  raster.georef.origin_x = origin.x;
-  raster.georef.origin_y = origin.y;
-  return kept;
-}
-
 void run_intervisibility(const Program& program, const Options& options, const Stopwatch& watch) {
   if (!options.observers.empty() || !options.to.empty())
     throw UsageError("--intervisibility looks from every cell: leave out --observer and --to", {}, "--intervisibility");
   if (options.exact) throw UsageError("--intervisibility works on cells: leave out --exact", {}, "--exact");
   const Context context = program.context();
   Raster raster = load_heights(program, options, context);
-  if (options.stride > std::min(raster.columns, raster.rows))
-    throw UsageError(
-        fmt::format("--stride {}: the grid has {} x {} cells", options.stride, raster.columns, raster.rows), {},
-        "--stride");
   const std::size_t cells = raster.cells();
   const IntervisibilityOptions field{options.directions, options.observer_height, options.target_height,
                                      options.radius};
   std::vector<float> map;
   if (options.stride > 0) {
-    map = exact_intervisibility(raster, options.stride, field, context);
-    map = thin(raster, map, options.stride);
+    raster.heights = exact_intervisibility(raster, options.stride, field, context);
+    raster = thinned(raster, options.stride);
+    map = std::get<std::vector<float>>(raster.heights);
   } else {
     map = intervisibility_map(raster, field, context);
     program.say(

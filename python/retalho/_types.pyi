@@ -1,7 +1,7 @@
 # What _retalho.pyi calls its types; there is no such module when the program runs.
 from collections.abc import Callable
 from os import PathLike
-from typing import Literal, Protocol, TypeAlias, TypedDict
+from typing import Literal, NotRequired, Protocol, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ Quantity: TypeAlias = Literal["height", "gradient", "slope", "aspect", "normal",
 Parameters: TypeAlias = Literal["uniform", "centripetal", "chord", "x"]
 Recovery: TypeAlias = Literal["smooth", "spr", "barycentric"]
 Layout: TypeAlias = Literal["delaunay", "midpoint"]
+Box: TypeAlias = tuple[float, float, float, float]
+CurvePlace: TypeAlias = tuple[float, tuple[float, ...], float]
+PatchStyle: TypeAlias = Literal["shaded", "lines", "isophotes", "zebra", "gaussian", "mean"]
 Look: TypeAlias = tuple[bool, int, float, float]
 Samples: TypeAlias = Literal["parameter", "arc-length"]
 
@@ -52,7 +55,52 @@ class PatchJoin(TypedDict):
     watertight: bool
     gap: float
     angle: float
+    at: float
+    point: tuple[float, float, float]
     kind: Literal["G0", "G1"]
+
+class Comparison(TypedDict):
+    name: str
+    surface: str
+    gradients: str
+    cross_derivative: NotRequired[str]
+    vertices: int
+    triangles: int
+    coefficients: int
+    numbers: int
+    bytes: int
+    rmse: float
+    max_error: float
+    max_error_at: tuple[float, float]
+    slope_rmse: float
+    cells: int
+    valid_cells: int
+    uncovered: int
+    violations: int
+    visibility_rmse: NotRequired[float]
+    visibility_max: NotRequired[float]
+    visibility_mean: NotRequired[float]
+    visibility_cells: NotRequired[int]
+    visibility_difference: NotRequired[NDArray[np.float32]]
+
+class FitReport(TypedDict):
+    points: int
+    used: int
+    resolution: int
+    coefficients: int
+    crossed: int
+    residual_mean: float
+    residual_quantile: float
+    residual_max: float
+    outliers: int
+    open_faces: int
+
+class SurfacePart(TypedDict):
+    points: int
+    triangles: int
+    area: float
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
 
 class PatchReport(TypedDict):
     boundary_gap: float

@@ -31,5 +31,7 @@ pybind11::object contours_object(ContourSet set, const Georef& georef, const Ask
 
 /// Needs the class Terrain.
 void add_contours(pybind11::module_& module);
+/// Terrain.conics; needs the classes Terrain and Curve.
+void add_conics(pybind11::module_& module);
 
 }  // namespace retalho::python

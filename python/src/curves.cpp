@@ -8,13 +8,10 @@
 #include <vector>
 
 #include "arrays.h"
-#include "model.h"
-#include "retalho/core/atomic_file.h"
 #include "retalho/core/error.h"
 #include "retalho/curve/bspline.h"
 #include "retalho/curve/continuity.h"
 #include "retalho/curve/convert.h"
-#include "retalho/curve/document.h"
 #include "retalho/curve/edit.h"
 #include "retalho/curve/flatten.h"
 #include "retalho/curve/interpolate.h"
@@ -36,21 +33,6 @@ Holder box(Curve curve) {
 
 std::vector<double> optional_vector(const py::object& object, const std::string& name) {
   return object.is_none() ? std::vector<double>{} : as_vector(object, name);
-}
-
-/// (n, dimension) of points.
-py::array_t<double> coordinates(const std::vector<Vec3>& points, int dimension) {
-  std::vector<double> numbers;
-  numbers.reserve(points.size() * static_cast<std::size_t>(dimension));
-  for (const Vec3& p : points) {
-    numbers.insert(numbers.end(), {p.x, p.y});
-    if (dimension == 3) numbers.push_back(p.z);
-  }
-  return own<double>(std::move(numbers), {count_of(points.size()), dimension});
-}
-
-py::tuple coordinates(Vec3 p, int dimension) {
-  return dimension == 3 ? py::make_tuple(p.x, p.y, p.z) : py::make_tuple(p.x, p.y);
 }
 
 /// A value of `width` numbers for each parameter, of shape u.shape + (width,), or u.shape for width 0 (one number).
@@ -333,25 +315,6 @@ void add_curves(py::module_& module) {
       .def("__len__", [](const Box& b) { return b.curve.segment_count(); })
       .def("__repr__", &repr);
   curve.attr("__module__") = "retalho";
-  module.def(
-      "read_curves",
-      [](const py::object& path) {
-        const CurveDocument document = read_curves(path_text(path));
-        py::list list;
-        for (std::size_t i = 0; i < document.curves.size(); ++i)
-          list.append(box(to_curve(document.curves[i], fmt::format("curves[{}]", i))));
-        return list;
-      },
-      py::arg("path"), "The parametric curves of a JSON file (docs/curves.md), a list of Curve.");
-  module.def(
-      "write_curves",
-      [](const std::vector<Holder>& curves, const py::object& path, bool overwrite) {
-        CurveDocument document;
-        for (const Holder& one : curves) document.curves.push_back(to_spec(one->curve));
-        write_file(path_text(path), to_json(document), overwrite);
-      },
-      py::arg("curves"), py::arg("path"), py::kw_only(), py::arg("overwrite") = false,
-      "Curves as JSON, exact. Raises CannotWrite.");
 }
 
 }  // namespace retalho::python

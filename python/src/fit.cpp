@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "budget.h"
 #include "grid.h"
 #include "retalho/core/error.h"
 #include "retalho/raster/gdal.h"
@@ -27,13 +28,8 @@ namespace py = pybind11;
 namespace retalho::python {
 namespace {
 
-constexpr double kDefaultShare = 0.01;  // of the height range, as the program's
-constexpr std::size_t kLeastVertices = 3;
-
 /// The options as Python gives them.
-struct Asked {
-  std::optional<double> max_error, ratio;
-  std::optional<long long> vertices;
+struct Asked : AskedBudget {
   std::string surface = "clough-tocher", cross_derivative = "perpendicular";
   std::optional<std::string> fit, refine, effort;  // none: as the program chooses
   std::optional<std::string> gradients;
@@ -41,34 +37,7 @@ struct Asked {
   std::vector<std::vector<Vec2>> crease_lines = {};  // in the CRS
 
   bool creases() const { return chosen_creases || !crease_lines.empty(); }
-  bool budget() const { return max_error || ratio || vertices; }
 };
-
-struct Budget {
-  double max_error = 0;
-  std::size_t vertices = 0;
-};
-
-/// `range`: of the heights; the default tolerance is a hundredth of it.
-Budget resolve(const Asked& asked, std::size_t cells, double range) {
-  Budget budget;
-  if (asked.vertices && asked.ratio)
-    throw UsageError("vertices and ratio say the same in two ways: give one of them", {}, "ratio");
-  if (asked.max_error && !(std::isfinite(*asked.max_error) && *asked.max_error >= 0))
-    throw UsageError(fmt::format("max_error must be 0 or more, not {}", *asked.max_error), {}, "max_error");
-  if (asked.vertices && *asked.vertices < static_cast<long long>(kLeastVertices))
-    throw UsageError(fmt::format("vertices must be {} or more, not {}", kLeastVertices, *asked.vertices), {},
-                     "vertices");
-  if (asked.ratio && !(*asked.ratio > 0 && *asked.ratio <= 1))
-    throw UsageError(fmt::format("ratio must be above 0 and at most 1, not {}", *asked.ratio), {}, "ratio");
-  if (asked.max_error) budget.max_error = *asked.max_error;
-  if (asked.vertices) budget.vertices = static_cast<std::size_t>(*asked.vertices);
-  if (asked.ratio)
-    budget.vertices =
-        std::max(kLeastVertices, static_cast<std::size_t>(std::llround(*asked.ratio * static_cast<double>(cells))));
-  if (!asked.budget()) budget.max_error = kDefaultShare * range;
-  return budget;
-}
 
 /// One of `choices`, or an error that lists them.
 std::string choose(const std::string& name, const std::string& word, std::initializer_list<const char*> choices) {
@@ -107,7 +76,7 @@ void check_fit(const Asked& asked) {
   if (asked.effort && !refined)
     throw UsageError("effort moves the vertices of a surface: refine='flat' has none to move", {}, "effort");
   if (asked.creases()) {
-    if (asked.max_error || !asked.budget())
+    if (asked.max_error || !asked.given())
       throw UsageError("creases go with a budget: give vertices or ratio, and no max_error", {}, "creases");
     if (asked.surface == "linear")
       throw UsageError("creases are for smooth surfaces: a flat one folds along every edge", {}, "surface");
@@ -148,9 +117,11 @@ Terrain fit_raster(const Raster& raster, const Asked& asked, const SurfaceOption
       terrain = refine_along_lines(raster, lines, how, nullptr, context);
     }
   } else {
-    terrain = make_terrain(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, context);
-    if (fit != "interpolate")
-      terrain = fit_least_squares(std::move(terrain), raster, {.heights_only = fit == "z-only"}, context);
+    const FitKind kind = fit == "z-only"          ? FitKind::z_only
+                         : fit == "least-squares" ? FitKind::least_squares
+                                                  : FitKind::interpolate;
+    terrain =
+        make_fitted(refine_tin(raster, {budget.max_error, budget.vertices}, context), raster, surface, kind, context);
   }
   terrain.tolerance = budget.max_error;
   return terrain;
@@ -214,7 +185,7 @@ Terrain fit_cloud(const std::vector<Vec3>& points, Lines lines, const Georef& ge
                   SurfaceOptions surface, const Context& context) {
   Tin tin;
   double tolerance = 0;
-  if (asked.budget()) {
+  if (asked.given()) {
     const auto [low, high] =
         std::minmax_element(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
     const Budget budget = resolve(asked, points.size(), high->z - low->z);
@@ -250,8 +221,12 @@ void add_fit(py::module_& module) {
          const std::string& surface, std::optional<std::string> gradients, const std::string& cross_derivative,
          std::optional<std::string> fit, std::optional<std::string> refine, std::optional<std::string> effort,
          const py::object& creases, int threads, const py::object& progress) {
-        Asked asked{max_error,           ratio,          vertices,          surface,
-                    cross_derivative,    std::move(fit), std::move(refine), std::move(effort),
+        Asked asked{{max_error, ratio, vertices},
+                    surface,
+                    cross_derivative,
+                    std::move(fit),
+                    std::move(refine),
+                    std::move(effort),
                     std::move(gradients)};
         take_creases(creases, asked);
         const SurfaceOptions options = surface_options(asked, false);
@@ -298,7 +273,7 @@ void add_fit(py::module_& module) {
         const SurfaceOptions options = surface_options(asked, true);
         resolve(asked, 1, 1);
         Lines lines = lines_of(breaklines, "breaklines");
-        if (!lines.empty() && asked.budget())
+        if (!lines.empty() && asked.given())
           throw UsageError("breaklines keep every point: leave max_error, vertices and ratio out", {}, "breaklines");
         Georef georef;
         const std::vector<Vec3> local = localize(as_points3(points, "points"), crs_text(crs), georef);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "arrays.h"
+#include "budget.h"
 #include "grid.h"
 #include "model.h"
 #include "retalho/core/error.h"
@@ -21,14 +22,14 @@ namespace py = pybind11;
 namespace retalho::python {
 namespace {
 
-CompactOptions compact_options(const std::optional<double>& max_error, const std::optional<long long>& vertices,
-                               const std::string& surface, const std::string& fit) {
+CompactOptions compact_options(const AskedBudget& asked, const std::string& surface, const std::string& fit,
+                               const std::string& effort) {
   CompactOptions options;
-  if (!max_error && !vertices) throw UsageError("give max_error, vertices or both", {}, "max_error");
-  if (max_error && !(std::isfinite(*max_error) && *max_error > 0))
-    throw UsageError(fmt::format("max_error must be over 0, not {}", *max_error), {}, "max_error");
-  if (vertices && *vertices < 3)
-    throw UsageError(fmt::format("vertices must be 3 or more, not {}", *vertices), {}, "vertices");
+  if (!asked.given())
+    throw UsageError("give max_error, vertices or both; ratio is vertices as a share of the cells", {}, "max_error");
+  resolve(asked, 1, 1);
+  if (asked.max_error && !(*asked.max_error > 0))
+    throw UsageError(fmt::format("max_error must be over 0, not {}", *asked.max_error), {}, "max_error");
   const std::optional<SurfaceKind> kind = parse_surface(surface);
   if (!kind || *kind == SurfaceKind::powell_sabin)
     throw UsageError("surface must be 'linear' or 'clough-tocher', not '" + surface + "'", {}, "surface");
@@ -38,8 +39,9 @@ CompactOptions compact_options(const std::optional<double>& max_error, const std
     throw UsageError("fit='z-only' is for surface='clough-tocher'", {}, "fit");
   options.surface = *kind;
   options.heights_only = fit == "z-only";
-  options.max_error = max_error.value_or(0);
-  options.vertices = static_cast<std::size_t>(vertices.value_or(0));
+  if (effort != "fast" && effort != "normal" && effort != "best")
+    throw UsageError("effort must be 'fast', 'normal' or 'best', not '" + effort + "'", {}, "effort");
+  options.effort = effort == "fast" ? Effort::fast : effort == "best" ? Effort::best : Effort::normal;
   return options;
 }
 
@@ -59,23 +61,28 @@ void add_formats(py::module_& module) {
   module.def(
       "fit_compact",
       [](const py::object& z, const py::object& transform, const py::object& crs, const py::object& nodata,
-         std::optional<double> max_error, std::optional<long long> vertices, const std::string& surface,
-         const std::string& fit, int threads, const py::object& progress) {
-        const CompactOptions options = compact_options(max_error, vertices, surface, fit);
+         std::optional<double> max_error, std::optional<long long> vertices, std::optional<double> ratio,
+         const std::string& surface, const std::string& fit, const std::string& effort, int threads,
+         const py::object& progress) {
+        const AskedBudget asked{max_error, ratio, vertices};
+        CompactOptions options = compact_options(asked, surface, fit, effort);
         const Running running{threads, progress};
         const auto raster = raster_of(z, {transform, crs, nodata}, running);
-        const CompactModel model =
-            run(running, [&](const Context& context) { return fit_compact(*raster, options, context); });
+        const CompactModel model = run(running, [&](const Context& context) {
+          const Budget budget = resolve(asked, summarize(*raster).valid, 0);
+          options.max_error = budget.max_error;
+          options.vertices = budget.vertices;
+          return fit_compact(*raster, options, context);
+        });
         return py::bytes(model.bytes);
       },
       py::arg("z"), py::kw_only(), py::arg("transform") = py::none(), py::arg("crs") = py::none(),
       py::arg("nodata") = py::none(), py::arg("max_error") = py::none(), py::arg("vertices") = py::none(),
-      py::arg("surface") = "clough-tocher", py::arg("fit") = "least-squares", py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
+      py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher", py::arg("fit") = "least-squares",
+      py::arg("effort") = "normal", py::arg("threads") = 0, py::arg("progress") = py::none(),
       "An elevation grid to the bytes of a compact model file (from_bytes reads them): refined by the surface itself "
-      "and "
-      "rounded, with every valid cell within max_error of what is read back; vertices: a budget. surface: linear or "
-      "clough-tocher. fit: least-squares or z-only.");
+      "and rounded, with every valid cell within max_error of what is read back; vertices or ratio: a budget. surface: "
+      "linear or clough-tocher. fit: least-squares or z-only. effort: fast, normal or best, as fit has it.");
   auto terrain =
       py::reinterpret_borrow<py::class_<TerrainModel, std::shared_ptr<TerrainModel>>>(module.attr("Terrain"));
   terrain.def(

@@ -7,6 +7,7 @@
 
 #include "arrays.h"
 #include "data_array.h"
+#include "model.h"
 #include "retalho/core/error.h"
 #include "retalho/raster/gdal.h"
 #include "retalho/raster/height_sink.h"
@@ -147,6 +148,12 @@ std::string crs_title(const Georef& georef) {
   return to == std::string::npos ? "no CRS" : georef.crs_wkt.substr(from + 1, to - from - 1);
 }
 
+WriteOptions write_options(const std::string& path, bool cog, bool overwrite) {
+  if (cog && !path.ends_with(".tif") && !path.ends_with(".tiff"))
+    throw UsageError("'" + path + "' must end in .tif or .tiff: a Cloud-Optimised GeoTIFF is one", path, "path");
+  return {.driver = cog ? "COG" : "", .overwrite = overwrite};
+}
+
 Raster empty_raster(const Transform& t, const std::string& crs, int columns, int rows) {
   if (columns < 1 || rows < 1 || columns > 65535 || rows > 65535)
     throw BadInput(fmt::format("the shape ({}, {}) must have sides of 1 to 65,535 cells", rows, columns), {}, "shape");
@@ -231,15 +238,15 @@ void add_grid(py::module_& module) {
       "shape", [](const Grid& g) { return py::make_tuple(g.raster->rows, g.raster->columns); }, "(rows, columns)");
   grid.def(
       "write",
-      [](const Grid& g, const py::object& path, bool overwrite, int threads, const py::object& progress) {
-        const auto name = py::cast<std::string>(py::module_::import("os").attr("fsdecode")(path));
-        run(Running{threads, progress},
-            [&](const Context& context) { write_raster(*g.raster, name, {.overwrite = overwrite}, context); });
+      [](const Grid& g, const py::object& path, bool cog, bool overwrite, int threads, const py::object& progress) {
+        const std::string name = path_text(path);
+        const WriteOptions how = write_options(name, cog, overwrite);
+        run(Running{threads, progress}, [&](const Context& context) { write_raster(*g.raster, name, how, context); });
       },
-      py::arg("path"), py::kw_only(), py::arg("overwrite") = false, py::arg("threads") = 0,
+      py::arg("path"), py::kw_only(), py::arg("cog") = false, py::arg("overwrite") = false, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "Writes one band with CRS, transform and no-data, by the path's ending (.tif, .asc, ...); complete or absent. "
-      "Raises CannotWrite.");
+      "cog: a Cloud-Optimised GeoTIFF (.tif), with overviews. Raises CannotWrite.");
   grid.def("__repr__", &repr);
   grid.attr("__module__") = "retalho";
   module.def(

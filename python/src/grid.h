@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "retalho/raster/io.h"
 #include "retalho/raster/raster.h"
 #include "running.h"
 
@@ -44,6 +45,9 @@ std::shared_ptr<const Raster> raster_of(const pybind11::object& z, const Placing
 
 /// An empty grid with that transform and shape. Throws BadInput for sides of no cell or over 65,535.
 Raster empty_raster(const Transform& transform, const std::string& crs, int columns, int rows);
+
+/// How a raster is written. Throws UsageError for a COG that is not called .tif.
+WriteOptions write_options(const std::string& path, bool cog, bool overwrite);
 
 void add_grid(pybind11::module_& module);
 

@@ -107,6 +107,18 @@ void add_patch_class(py::module_& module) {
       },
       py::arg("u"), py::arg("v"), py::kw_only(), py::arg("threads") = 0, "d/du and d/dv, shape (..., 6).");
   patch.def(
+      "second_derivatives",
+      [](const PatchView& p, const py::object& u, const py::object& v, int threads) {
+        return at(p, u, v, 9, threads, [](const PatchSurface& s, Vec2 uv, double* out) {
+          const PatchJet jet = s.full_jet(uv);
+          put(jet.duu, out);
+          put(jet.duv, out + 3);
+          put(jet.dvv, out + 6);
+        });
+      },
+      py::arg("u"), py::arg("v"), py::kw_only(), py::arg("threads") = 0,
+      "d2/du2, d2/du dv and d2/dv2, shape (..., 9).");
+  patch.def(
       "normal",
       [](const PatchView& p, const py::object& u, const py::object& v, int threads) {
         return at(p, u, v, 3, threads,
@@ -179,6 +191,8 @@ py::list joins_of(const Patches& set) {
     d["watertight"] = join.watertight;
     d["gap"] = join.gap;
     d["angle"] = join.degrees;
+    d["at"] = join.at;
+    d["point"] = py::make_tuple(join.point.x, join.point.y, join.point.z);
     d["kind"] = join.g1 ? "G1" : "G0";
     list.append(d);
   }
@@ -207,11 +221,27 @@ Holder make_set(const std::vector<std::vector<std::shared_ptr<CurveBox>>>& sides
   });
 }
 
-Holder of_mesh(const TriangleMesh& mesh, const std::string& weights, const Recovery recovery, const Running& running) {
+/// Three vertices of a mesh's border.
+std::array<std::uint32_t, 3> corners_of(const py::object& corners, std::size_t vertices) {
+  const std::vector<double> given = as_vector(corners, "corners");
+  if (given.size() != 3)
+    throw BadInput(fmt::format("corners must be three vertices, not {}", given.size()), {}, "corners");
+  std::array<std::uint32_t, 3> three{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(given[k] >= 0 && given[k] < static_cast<double>(vertices)))
+      throw BadInput(fmt::format("corners names vertex {}: there are {}", given[k], vertices), {}, "corners");
+    three[k] = static_cast<std::uint32_t>(given[k]);
+  }
+  return three;
+}
+
+Holder of_mesh(const TriangleMesh& mesh, const std::string& weights, const py::object& corners, const Recovery recovery,
+               const Running& running) {
   if (weights != "mean-value" && weights != "shape-preserving")
     throw UsageError("parameters must be 'mean-value' or 'shape-preserving', not '" + weights + "'", {}, "parameters");
   ParameterizeOptions options;
   options.weights = weights == "mean-value" ? Weights::mean_value : Weights::shape_preserving;
+  if (!corners.is_none()) options.corners = corners_of(corners, mesh.positions.size());
   return run(running, [&](const Context& context) {
     std::vector<Patch> patches;
     patches.push_back(patch_of(parameterize(mesh.positions, mesh.triangles, options, context), recovery));
@@ -245,13 +275,14 @@ void add_patches(py::module_& module) {
           py::arg("threads") = 0, py::arg("progress") = py::none());
   set.def_static(
       "from_mesh",
-      [](const TriangleMesh& mesh, const std::string& parameters, const std::string& recovery, int threads,
-         const py::object& progress) {
-        return of_mesh(mesh, parameters, parse_recovery(recovery), {threads, progress});
+      [](const TriangleMesh& mesh, const std::string& parameters, const std::string& recovery,
+         const py::object& corners, int threads, const py::object& progress) {
+        return of_mesh(mesh, parameters, corners, parse_recovery(recovery), {threads, progress});
       },
       py::arg("mesh"), py::kw_only(), py::arg("parameters") = "mean-value", py::arg("recovery") = "smooth",
-      py::arg("threads") = 0, py::arg("progress") = py::none(),
-      "One patch of a triangle mesh that is a disk, by Floater's parameters (mean-value or shape-preserving).");
+      py::arg("corners") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+      "One patch of a triangle mesh that is a disk, by Floater's parameters (mean-value or shape-preserving). corners: "
+      "the three vertices of its border that become the patch's; None: the sharpest turns.");
   set.def("__len__", [](const Patches& s) { return s.patches().size(); })
       .def(
           "__getitem__",
@@ -265,17 +296,29 @@ void add_patches(py::module_& module) {
       .def("__iter__",
            [](const py::object& self) { return py::reinterpret_steal<py::iterator>(PySeqIter_New(self.ptr())); })
       .def("joins", &joins_of,
-           "One dict a shared side: patches, sides, watertight, gap (a length), angle (degrees), kind (G0 or G1).")
+           "One dict a shared side: patches, sides, watertight, gap (a length), angle (the largest, degrees), at and "
+           "point "
+           "(where that is: along the side, 0 to 1, and in space), kind (G0 or G1).")
       .def(
           "mesh",
-          [](const Patches& s, double tolerance, int threads, const py::object& progress) {
+          [](const Patches& s, double tolerance, std::size_t refine, int threads, const py::object& progress) {
+            if (refine < 1 || refine > 1000 || (refine > 1 && tolerance > 0))
+              throw UsageError("refine is 1 to 1000, and goes without tolerance", {}, "refine");
             return std::make_shared<TriangleMesh>(run(Running{threads, progress}, [&](const Context& context) {
-              return mesh_patch_surfaces(s.patches(), s.surfaces(), tolerance, nullptr, nullptr, context);
+              if (refine == 1)
+                return mesh_patch_surfaces(s.patches(), s.surfaces(), tolerance, nullptr, nullptr, context);
+              std::vector<Patch> fine;
+              for (std::size_t i = 0; i < s.patches().size(); ++i) {
+                context.check();
+                fine.push_back(retalho::refine(s.patches()[i], s.surfaces()[i], refine));
+              }
+              return mesh_patches(fine);
             }));
           },
-          py::kw_only(), py::arg("tolerance") = 0.0, py::arg("threads") = 0, py::arg("progress") = py::none(),
+          py::kw_only(), py::arg("tolerance") = 0.0, py::arg("refine") = 1, py::arg("threads") = 0,
+          py::arg("progress") = py::none(),
           "One mesh of all; nodes that two patches share are one. tolerance: largest distance of a triangle's middle "
-          "to the surface; 0: the nodes' triangles.")
+          "to the surface; 0: the nodes' triangles. refine: each edge of those cut into so many, instead.")
       .def("__repr__", [](const Patches& s) {
         std::size_t nodes = 0;
         for (const Patch& p : s.patches()) nodes += p.positions.size();

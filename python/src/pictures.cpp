@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
@@ -20,6 +22,7 @@
 #include "retalho/level/contour.h"
 #include "retalho/render/contour_sheet.h"
 #include "retalho/render/perspective.h"
+#include "retalho/render/surface_comparison.h"
 #include "running.h"
 #include "terrain.h"
 
@@ -59,18 +62,16 @@ struct View {
   bool perspective = false;
   ReliefOptions relief;
   std::optional<double> exaggeration;
+  std::optional<std::pair<double, double>> limits;
   double from = 200, elevation = 35;
 };
 
 View view_of(const std::pair<int, int>& size, const std::string& view, const std::string& colors,
-             const std::pair<double, double>& light, std::optional<double> exaggeration, double from,
-             double elevation) {
+             const std::pair<double, double>& light, std::optional<double> exaggeration,
+             const std::optional<std::pair<double, double>>& limits, double from, double elevation) {
   View out;
   std::tie(out.width, out.height) = size;
-  if (out.width < 16 || out.height < 16 || out.width > 20000 || out.height > 20000)
-    throw UsageError(
-        fmt::format("size must be (width, height), 16 to 20,000 pixels each, not ({}, {})", out.width, out.height), {},
-        "size");
+  check_size(size);
   if (view != "plan" && view != "perspective")
     throw UsageError("view must be 'plan' or 'perspective', not '" + view + "'", {}, "view");
   if (colors != "hypsometric" && colors != "gray")
@@ -86,6 +87,10 @@ View view_of(const std::pair<int, int>& size, const std::string& view, const std
   out.relief.azimuth = light.first;
   out.relief.altitude = light.second;
   out.exaggeration = exaggeration;
+  if (limits && !(limits->first < limits->second && std::isfinite(limits->first) && std::isfinite(limits->second)))
+    throw UsageError(fmt::format("limits must be (low, high), not ({}, {})", limits->first, limits->second), {},
+                     "limits");
+  out.limits = limits;
   out.from = from;
   out.elevation = elevation;
   return out;
@@ -109,6 +114,7 @@ Image draw(const Surface& surface, const Surface* truth, const View& view, const
     relief.high = std::max(std::abs(errors.low), std::abs(errors.high));
     relief.low = -relief.high;
   }
+  if (view.limits) std::tie(relief.low, relief.high) = *view.limits;
   if (!view.perspective)
     return shade_relief(source, fit_window(surface.georef(), extent, view.width, view.height), relief, color, context);
   PerspectiveOptions options;
@@ -117,11 +123,6 @@ Image draw(const Surface& surface, const Surface* truth, const View& view, const
   options.elevation = view.elevation;
   options.base = range.low - 0.1 * (range.high - range.low);
   return draw_perspective(source, surface.georef(), extent, view.width, view.height, options, color, context);
-}
-
-py::array pixels_of(Image image) {
-  const Shape shape{image.height, image.width, 3};
-  return own<std::uint8_t>(std::move(image.pixels), shape);
 }
 
 /// What a map sheet shows.
@@ -203,7 +204,34 @@ py::dict write_sheet(const Surface& surface, const std::string& path, const Aske
   return d;
 }
 
+/// The names of the surfaces that were drawn.
+std::vector<std::string> draw_comparison(const Raster& raster, const AskedLines& asked, int zoom,
+                                         const std::string& path, const VectorOptions& file, const Context& context) {
+  const Raster part = middle_of(raster, zoom);
+  const RasterSummary shown = summarize(part);
+  if (shown.valid == 0) throw BadInput("the part that is shown has no data: zoom=0 shows all", {}, "zoom");
+  SurfaceComparison comparison;
+  comparison.levels = levels_of(asked, shown.minimum, shown.maximum);
+  comparison.index = index_levels(comparison.levels, file);
+  comparison.tolerance = asked.tolerance.value_or(0.02 * std::min(part.cell_width, part.cell_height));
+  const ComparedSurfaces drawn = compare_grid_surfaces(part, comparison, context);
+  write_picture(drawn.picture, path, file.overwrite);
+  return drawn.names;
+}
+
 }  // namespace
+
+py::array pixels_of(Image image) {
+  const Shape shape{image.height, image.width, 3};
+  return own<std::uint8_t>(std::move(image.pixels), shape);
+}
+
+void check_size(const std::pair<int, int>& size) {
+  const auto [width, height] = size;
+  if (width < 16 || height < 16 || width > 20000 || height > 20000)
+    throw UsageError(fmt::format("size must be (width, height), 16 to 20,000 pixels each, not ({}, {})", width, height),
+                     {}, "size");
+}
 
 void add_pictures(py::module_& module) {
   module.def(
@@ -211,8 +239,9 @@ void add_pictures(py::module_& module) {
       [](const py::object& z, const py::object& transform, const py::object& crs, const py::object& nodata,
          const std::pair<int, int>& size, const std::string& view, const std::string& colors,
          const std::pair<double, double>& light, std::optional<double> exaggeration, double from, double elevation,
-         const py::object& error, int threads, const py::object& progress) {
-        const View how = view_of(size, view, colors, light, exaggeration, from, elevation);
+         const std::optional<std::pair<double, double>>& limits, const py::object& error, int threads,
+         const py::object& progress) {
+        const View how = view_of(size, view, colors, light, exaggeration, limits, from, elevation);
         const Running running{threads, progress};
         const Surface surface(z, {transform, crs, nodata}, running);
         std::optional<Surface> truth;
@@ -224,12 +253,40 @@ void add_pictures(py::module_& module) {
       py::arg("nodata") = py::none(), py::arg("size") = std::pair{640, 480}, py::arg("view") = "plan",
       py::arg("colors") = "hypsometric", py::arg("light") = std::pair{315.0, 45.0},
       py::arg("exaggeration") = py::none(), py::arg("from_") = 200.0, py::arg("elevation") = 35.0,
-      py::arg("error") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("limits") = py::none(), py::arg("error") = py::none(), py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
       "A picture of a grid or a Terrain, uint8 (height, width, 3), white where there is no data.\n\n"
       "size: (width, height) in pixels. view: plan, shaded relief from above; or perspective, from the azimuth from_ "
       "and so many degrees (elevation) over the horizon. colors: hypsometric or gray. light: (azimuth, altitude), "
       "degrees. exaggeration: of heights; None: chosen by the slopes. error: a grid or Terrain; the colours are then "
-      "the difference from it, blue below to red above.");
+      "the difference from it, blue below to red above. limits: (low, high), the heights (or differences) at the ends "
+      "of the colours, for pictures that are to be laid side by side; None: the picture's own.");
+  module.def(
+      "compare_surfaces",
+      [](const py::object& z, const py::object& path, const py::object& levels, const py::object& transform,
+         const py::object& crs, const py::object& nodata, std::optional<double> interval, double base,
+         std::optional<double> tolerance, int zoom, int index_every, bool overwrite, int threads,
+         const py::object& progress) {
+        const AskedLines asked = parse_lines(levels, interval, base, tolerance, true, false);
+        const Running running{threads, progress};
+        const std::string name = path_text(path);
+        const auto raster = raster_of(z, {transform, crs, nodata}, running);
+        return run(running, [&](const Context& context) {
+          return draw_comparison(*raster, asked, zoom, name, {overwrite, index_every, base, interval.value_or(0)},
+                                 context);
+        });
+      },
+      py::arg("z"), py::arg("path"), py::arg("levels") = py::none(), py::kw_only(), py::arg("transform") = py::none(),
+      py::arg("crs") = py::none(), py::arg("nodata") = py::none(), py::arg("interval") = py::none(),
+      py::arg("base") = 0.0, py::arg("tolerance") = py::none(), py::arg("zoom") = 48, py::arg("index_every") = 5,
+      py::arg("overwrite") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
+      "A picture (.svg, .pdf or .png) of the level lines of every surface through all cells of a grid, side by side: "
+      "to "
+      "choose one by. levels, interval, base: as retalho.contours has them; tolerance None: a fiftieth of a cell. "
+      "zoom: "
+      "so many cells a side, of the grid's middle; 0: all. The names of the surfaces. Raises UsageError for more than "
+      "a "
+      "million cells.");
   module.def(
       "map_sheet",
       [](const py::object& z, const py::object& path, const py::object& levels, const py::object& transform,

@@ -11,6 +11,8 @@
 #include "quantity.h"
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
+#include "retalho/render/field.h"
+#include "retalho/terrain/point_report.h"
 #include "retalho/terrain/report.h"
 
 namespace py = pybind11;
@@ -218,12 +220,47 @@ void add_terrain(py::module_& module) {
       py::arg("z"), py::kw_only(), py::arg("transform") = py::none(), py::arg("crs") = py::none(),
       py::arg("nodata") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
       "The model's error at every valid cell of a grid, which may lie elsewhere than the model's own.");
+  terrain.def(
+      "compare_points",
+      [](const TerrainModel& m, const py::object& points, int threads, const py::object& progress) {
+        std::vector<Vec3> places = as_points3(points, "points");
+        for (Vec3& p : places) {
+          const Vec2 local = m.terrain().georef.to_local({p.x, p.y});
+          p = {local.x, local.y, p.z};
+        }
+        return run(Running{threads, progress}, [&](const Context& context) {
+          return assess_points(m.terrain(), places, m.terrain().tolerance, context);
+        });
+      },
+      py::arg("points"), py::kw_only(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+      "The model's error at points (n, 3), x, y in the CRS and height; those at one place count once, with their mean "
+      "height. slope_rmse stays 0.");
   terrain.def_property_readonly(
       "surface", [](const TerrainModel& m) { return surface_name(m.terrain().kind); },
       "\"linear\", \"powell-sabin\" or \"clough-tocher\".");
   terrain.def_property_readonly(
       "gradients", [](const TerrainModel& m) { return gradient_name(m.terrain().gradient_kind); },
       "How the gradients at vertices were set.");
+  terrain.def_property_readonly(
+      "cross_derivative", [](const TerrainModel& m) { return cross_derivative_name(m.terrain().cross_derivative); },
+      "\"perpendicular\" or \"cubic\": of clough-tocher across edges.");
+  terrain.def_property_readonly(
+      "coefficients", [](const TerrainModel& m) { return coefficient_count(m.terrain()); },
+      "How many the surface has: 1 a vertex (linear) or 3, and with creases 2 for each further sector.");
+  terrain.def_property_readonly(
+      "numbers", [](const TerrainModel& m) { return number_count(m.terrain()); },
+      "How many a plain table of the model would store: x, y and coefficients of each vertex, and creases.");
+  terrain.def_property_readonly(
+      "creases", [](const TerrainModel& m) { return m.terrain().creases.size(); },
+      "How many edges the surface folds along.");
+  terrain.def_property_readonly(
+      "bounds",
+      [](const TerrainModel& m) {
+        const Extent box = extent_of(m.terrain());
+        const Vec2 low = m.terrain().georef.to_crs(box.low), high = m.terrain().georef.to_crs(box.high);
+        return py::make_tuple(low.x, low.y, high.x, high.y);
+      },
+      "(left, bottom, right, top) in the CRS.");
   terrain.def_property_readonly(
       "tolerance", [](const TerrainModel& m) { return m.terrain().tolerance; },
       "The max_error asked for, height units; 0: none.");

@@ -8,12 +8,9 @@
 
 #include "arrays.h"
 #include "model.h"
-#include "retalho/cloud/normals.h"
 #include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 #include "retalho/mesh/tetraquad_mesh.h"
-#include "retalho/tetraquad/adaptive.h"
-#include "retalho/tetraquad/fit.h"
 #include "running.h"
 
 namespace py = pybind11;
@@ -23,74 +20,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr Vec3 kNowhere{kNan, kNan, kNan};
-
-/// What a fit gives: the surface and its report.
-struct Fitted {
-  TetraQuad surface;
-  TetraQuadFitReport report;
-};
-
-struct Asked {
-  int resolution = 32, neighbours = 16;
-  double smoothness = 1, quantile = 0.99;
-  std::optional<double> max_error;
-  std::optional<std::size_t> adaptive;
-  std::string split = "five", solver = "cholesky";
-  bool closed = false;
-};
-
-TetraQuadSolver parse_solver(const std::string& name) {
-  if (name == "cholesky") return TetraQuadSolver::cholesky;
-  if (name == "cg") return TetraQuadSolver::cg;
-  if (name == "local") return TetraQuadSolver::local;
-  throw UsageError("solver must be 'cholesky', 'cg' or 'local', not '" + name + "'", {}, "solver");
-}
-
-Fitted fit_cloud(PointCloud cloud, const Asked& asked, const Context& context) {
-  if (cloud.normals.empty())
-    cloud.normals = estimate_normals(cloud.positions, {.neighbours = asked.neighbours}, nullptr, context);
-  TetraQuadFitOptions options;
-  options.resolution = asked.resolution;
-  options.smoothness = asked.smoothness;
-  options.split = asked.split == "kuhn" ? TetSplit::kuhn : TetSplit::five;
-  options.solver = parse_solver(asked.solver);
-  options.closed = asked.closed;
-  Fitted fitted;
-  if (asked.adaptive) {
-    TetraQuadAdaptiveOptions budget;
-    budget.coefficients = *asked.adaptive;
-    budget.max_error = asked.max_error.value_or(0);
-    budget.quantile = asked.quantile;
-    fitted.surface = fit_tetraquad_adaptive(cloud, budget, options, &fitted.report, context);
-  } else if (asked.max_error) {
-    TetraQuadErrorOptions error;
-    error.max_error = *asked.max_error;
-    error.quantile = asked.quantile;
-    fitted.surface = fit_tetraquad_to(cloud, error, options, &fitted.report, context);
-  } else {
-    fitted.surface = fit_tetraquad(cloud, options, &fitted.report, context);
-  }
-  return fitted;
-}
-
-py::object fit(const py::object& points, const py::object& normals, const Asked& asked, const Running& running) {
-  if (asked.split != "five" && asked.split != "kuhn")
-    throw UsageError("split must be 'five' or 'kuhn', not '" + asked.split + "'", {}, "split");
-  parse_solver(asked.solver);
-  PointCloud cloud;
-  cloud.positions = as_points3(points, "points");
-  if (!normals.is_none()) {
-    cloud.normals = as_points3(normals, "normals");
-    if (cloud.normals.size() != cloud.positions.size())
-      throw BadInput(fmt::format("normals must have the shape of points, ({}, 3), not ({}, 3)", cloud.positions.size(),
-                                 cloud.normals.size()),
-                     {}, "normals");
-  }
-  Fitted fitted = run(running, [&](const Context& context) { return fit_cloud(std::move(cloud), asked, context); });
-  const py::module_ warnings = py::module_::import("warnings");
-  for (const std::string& words : fitted.report.warnings) warnings.attr("warn")(words, py::arg("stacklevel") = 2);
-  return py::cast(std::make_shared<TetraQuadModel>(std::move(fitted.surface)));
-}
 
 /// Many rays' hits.
 struct Hits {
@@ -206,35 +135,6 @@ void add_tetraquad(py::module_& module) {
       module, "TetraQuad",
       "A smooth surface in tetrahedra, the zero set of a function that is about the signed distance, negative inside. "
       "Made by TetraQuad.fit or load. Immutable.");
-  tetraquad.def_static(
-      "fit",
-      [](const py::object& points, const py::object& normals, int resolution, double smoothness,
-         std::optional<double> max_error, double quantile, std::optional<std::size_t> adaptive,
-         const std::string& split, const std::string& solver, bool closed, int neighbours, int threads,
-         const py::object& progress) {
-        Asked asked;
-        asked.resolution = resolution;
-        asked.smoothness = smoothness;
-        asked.max_error = max_error;
-        asked.quantile = quantile;
-        asked.adaptive = adaptive;
-        asked.split = split;
-        asked.solver = solver;
-        asked.closed = closed;
-        asked.neighbours = neighbours;
-        return fit(points, normals, asked, {threads, progress});
-      },
-      py::arg("points"), py::arg("normals") = py::none(), py::kw_only(), py::arg("resolution") = 32,
-      py::arg("smoothness") = 1.0, py::arg("max_error") = py::none(), py::arg("quantile") = 0.99,
-      py::arg("adaptive") = py::none(), py::arg("split") = "five", py::arg("solver") = "cholesky",
-      py::arg("closed") = false, py::arg("neighbours") = 16, py::arg("threads") = 0, py::arg("progress") = py::none(),
-      "Points (n, 3) with outward normals (n, 3; None: estimated from so many neighbours) to a surface.\n\n"
-      "resolution: cubes along the longest side. max_error: the coarsest resolution at which `quantile` of the points "
-      "are that near, instead. adaptive: at most so many coefficients, smaller tetrahedra where the points ask for "
-      "them. smoothness: 0.1 for clean points, 10 for noisy ones. solver: 'cholesky'; 'cg' needs less memory and "
-      "more time; 'local' solves nothing, fast and rough. closed: the shape is known to be closed, so holes of any "
-      "size are closed. What is doubtful is a warning. "
-      "40,000 points at 24: about 2 s.");
   tetraquad.def(
       "cast",
       [](const TetraQuadModel& m, const py::object& origins, const py::object& directions, double near, double far,

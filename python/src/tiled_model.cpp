@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -22,6 +23,7 @@
 #include "retalho/mesh/tile_mesh.h"
 #include "retalho/raster/io.h"
 #include "retalho/raster/part.h"
+#include "retalho/tiles/sampled_raster.h"
 #include "retalho/tiles/source.h"
 #include "running.h"
 #include "terrain.h"
@@ -125,6 +127,37 @@ py::object sample(const TiledModel& model, const py::object& transform, const py
   Shape result{cells.rows, cells.columns};
   if (kQuantities[quantity].width > 1) result.push_back(kQuantities[quantity].width);
   return own<double>(std::move(values), result);
+}
+
+py::dict write_raster_of(const TiledModel& model, const py::object& path, const py::object& transform,
+                         const py::object& shape, const std::string& what, bool cog, bool overwrite,
+                         const Running& running) {
+  static const std::array<const char*, 4> names{"height", "slope", "aspect", "curvature"};
+  const auto* const found = std::find(names.begin(), names.end(), what);
+  if (found == names.end())
+    throw UsageError("what must be 'height', 'slope', 'aspect' or 'curvature', not '" + what + "'", {}, "what");
+  const auto quantity = static_cast<SampledQuantity>(found - names.begin());
+  const std::string name = path_text(path);
+  const WriteOptions how = write_options(name, cog, overwrite);
+  const TiledIndex& index = model.index();
+  const Cells cells = cells_of(index.georef, domain_of(index), transform, shape);
+  SampledRaster raster{{}, cells.origin, cells.step};
+  raster.place.columns = cells.columns;
+  raster.place.rows = cells.rows;
+  raster.place.cell_width = cells.step.x;
+  raster.place.cell_height = cells.step.y;
+  raster.place.georef = index.georef;
+  const Vec2 corner = index.georef.to_crs(cells.origin);
+  raster.place.georef.origin_x = corner.x;
+  raster.place.georef.origin_y = corner.y;
+  const std::size_t valid = run(running, [&](const Context& context) {
+    return write_sampled(model.reader(), raster, quantity, name, how, context);
+  });
+  py::dict d;
+  d["rows"] = cells.rows;
+  d["columns"] = cells.columns;
+  d["valid_cells"] = valid;
+  return d;
 }
 
 Grid window(const TiledModel& model, int row, int column, int rows, int columns, const Running& running) {
@@ -335,6 +368,17 @@ void add_outputs(Class& defined) {
       py::arg("progress") = py::none(),
       "The same straight into a .gpkg or .shp, which holds no more than the lines in the making (.geojson and .dxf are "
       "put together in memory). {levels, lines, points}.");
+  defined.def(
+      "write_raster",
+      [](const TiledModel& m, const py::object& path, const py::object& transform, const py::object& shape,
+         const std::string& what, bool cog, bool overwrite, int threads, const py::object& progress) {
+        return write_raster_of(m, path, transform, shape, what, cog, overwrite, {threads, progress});
+      },
+      py::arg("path"), py::arg("transform") = py::none(), py::arg("shape") = py::none(), py::kw_only(),
+      py::arg("what") = "height", py::arg("cog") = false, py::arg("overwrite") = false, py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "What sample gives (height, slope, aspect or curvature) straight into a raster of single precision, whose rows "
+      "are made as they are written (GeoTIFF; cog: Cloud-Optimised, with overviews). {rows, columns, valid_cells}.");
   defined.def(
       "write_mesh",
       [](const TiledModel& m, const py::object& path, double tolerance, bool overwrite, int threads,

@@ -149,7 +149,7 @@ ROWS = [
     ("viewshed g.asc -o o.tif --intervisibility --observer 1,2", 2, "looks from every cell: leave out"), ("viewshed m.retalho -o o.tif --intervisibility --exact", 2, "works on cells: leave out --exact"),
     ("viewshed g.asc -o o.tif --exact --observer 1030,2030", 2, "--exact asks for a model"), ("viewshed g.asc -o o.tif", 2, "give --observer X,Y (or --intervisibility)"),
     ("viewshed g.asc -o o.tif --stride 2 --observer 1030,2030", 2, "--stride thins the map of --intervisibility"), ("viewshed g.asc --observer 1030,2030", 2, "give the output with -o"),
-    ("viewshed g.asc -o o.tif --observer 1030,2030,x", 2, "expected X,Y or X,Y,HEIGHT"), ("viewshed g.asc -o o.tif --intervisibility --stride 99", 2, "--stride 99: the grid has 12 x 10 cells"),
+    ("viewshed g.asc -o o.tif --observer 1030,2030,x", 2, "expected X,Y or X,Y,HEIGHT"), ("viewshed g.asc -o o.tif --intervisibility --stride 99", 2, "a stride of 99 cells: the grid has 12 x 10 cells"),
     # mesh, render
     ("mesh m.retalho -o o.ply --tolerance -1", 2, "--tolerance must be 0 or more"), ("mesh m.retalho -o o.ply --level 3", 2, "go with -o DIR/layer.json or"),
     ("mesh m.retalho -o d/tileset.json --level 3", 2, "are of quantized-mesh (-o DIR/layer.json)"), ("mesh m.retalho -o d/layer.json --tile-triangles 3", 2, "--tile-triangles is of 3D Tiles"),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "retalho/core/error.h"
 #include "retalho/mesh/tetraquad_mesh.h"
 #include "retalho/tetraquad/adaptive.h"
 #include "retalho/tetraquad/fit.h"
@@ -121,6 +122,18 @@ TEST(SurfaceParts, ThatShareATetrahedronStayTogetherInModels) {
   const std::vector<char> left_out = tetrahedra_left_out(fine, made.field, found, keep);
   EXPECT_EQ(keep, (std::vector<char>{1, 1}));
   EXPECT_EQ(std::count(left_out.begin(), left_out.end(), 1), 0);
+}
+
+TEST(SurfaceParts, AreChosenByNumberAndByPoints) {
+  SurfaceParts found;
+  for (const std::size_t points : {900U, 80U, 80U, 3U}) found.parts.emplace_back().points = points;
+  EXPECT_EQ(choose_parts(found, {}), (std::vector<char>{1, 1, 1, 1}));
+  EXPECT_EQ(choose_parts(found, {.most = 2}), (std::vector<char>{1, 1, 0, 0}));
+  EXPECT_EQ(choose_parts(found, {.points = 80}), (std::vector<char>{1, 1, 1, 0}));
+  EXPECT_EQ(choose_parts(found, {.most = 2, .points = 81}), (std::vector<char>{1, 0, 0, 0}));
+  EXPECT_TRUE(choose_parts({}, {.most = 2, .points = 81}).empty());
+  EXPECT_THROW(choose_parts(found, {.most = 0}), UsageError);
+  EXPECT_THROW(choose_parts(found, {.points = 901}), UsageError);
 }
 
 TEST(SurfaceParts, OfAScanWithHoles) {

@@ -16,7 +16,7 @@ from conftest import ROOT, hills
 import retalho
 
 PACKAGE = pathlib.Path(retalho.__file__).parent
-STUB = ast.parse((PACKAGE / "_retalho.pyi").read_text())
+STUB = ast.parse((PACKAGE / "_retalho.pyi").read_text() + (PACKAGE / "_shapes.pyi").read_text())
 
 
 def test_types_are_checked_strictly(tmp_path: pathlib.Path) -> None:

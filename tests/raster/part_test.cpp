@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "retalho/core/error.h"
+
 namespace retalho {
 namespace {
 
@@ -34,6 +36,24 @@ TEST(RasterPart, HasTheSameHeightsAtTheSamePlaces) {
                       whole.georef.to_crs(whole.centre(w.column + c, w.row + r)));
         }
     }
+}
+
+TEST(RasterPart, ThinnedKeepsTheMiddleCellOfEachBlock) {
+  const Raster whole = numbered<float>(9, 7);
+  const Raster thin = thinned(whole, 3);
+  ASSERT_EQ(thin.columns, 3);
+  ASSERT_EQ(thin.rows, 2);
+  EXPECT_EQ(thin.cell_width, 9);
+  EXPECT_EQ(thin.cell_height, 6);
+  for (int r = 0; r < thin.rows; ++r)
+    for (int c = 0; c < thin.columns; ++c) {
+      EXPECT_EQ(thin.at(c, r), whole.at(3 * c + 1, 3 * r + 1));
+      EXPECT_TRUE(thin.georef.to_crs(thin.centre(c, r)) == whole.georef.to_crs(whole.centre(3 * c + 1, 3 * r + 1)));
+    }
+  EXPECT_EQ(thinned(whole, 1).cells(), whole.cells());
+  EXPECT_EQ(thinned(whole, 7).cells(), 1U);
+  EXPECT_THROW(thinned(whole, 0), UsageError);
+  EXPECT_THROW(thinned(whole, 8), UsageError);
 }
 
 }  // namespace

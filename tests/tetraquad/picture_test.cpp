@@ -17,6 +17,21 @@ std::size_t drawn(const Image& image) {
   }));
 }
 
+TEST(TetraQuadPicture, CutsAreReadInTheCrs) {
+  Georef georef;
+  georef.origin_x = 100;
+  georef.origin_y = 1000;
+  const CutPlane below = parse_cut("x<100.5", georef), above = parse_cut("y>999", georef), level = parse_cut("z>-2");
+  EXPECT_EQ(below.normal.x, 1);
+  EXPECT_EQ(below.offset, 0.5);
+  EXPECT_EQ(above.normal.y, -1);
+  EXPECT_EQ(above.offset, 1);
+  EXPECT_EQ(level.normal.z, -1);
+  EXPECT_EQ(level.offset, 2);
+  for (const char* wrong : {"", "x", "x<", "q<1", "x=1", "x<1m", "x<nan", "x<inf"})
+    EXPECT_THROW(parse_cut(wrong), UsageError) << wrong;
+}
+
 TEST(TetraQuadPicture, ABallIsADisc) {
   const TetraQuad surface = test::sample_tetraquad(TetSplit::five, 2);
   const TetraQuadField field(surface);

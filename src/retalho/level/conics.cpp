@@ -47,4 +47,12 @@ ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const 
   return set;
 }
 
+void move_to_crs(ConicSet& set, const Georef& georef) {
+  for (ConicLine& line : set.lines)
+    for (Vec3& p : line.curve.points) {
+      const Vec2 place = georef.to_crs({p.x, p.y});
+      p = {place.x, place.y, 0};
+    }
+}
+
 }  // namespace retalho

@@ -6,6 +6,7 @@
 
 #include "retalho/core/context.h"
 #include "retalho/curve/curve.h"
+#include "retalho/raster/georef.h"
 #include "retalho/terrain/terrain.h"
 
 namespace retalho {
@@ -31,5 +32,8 @@ struct ConicSet {
 /// surface (its lines are cubics), levels as in trace_contours. Cost: tracing as trace_contours does, and 108 bytes a
 /// segment. The same bytes from any number of threads.
 ConicSet trace_conics(const Terrain& terrain, std::vector<double> levels, const Context& context = {});
+
+/// The same curves in the coordinates of the CRS: lines that are conics stay conics.
+void move_to_crs(ConicSet& set, const Georef& georef);
 
 }  // namespace retalho

@@ -1,5 +1,7 @@
 #include "retalho/mesh/surface_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
 
 namespace retalho {
@@ -137,6 +140,18 @@ SurfaceParts find_parts(const TriangleMesh& mesh, const TetraQuadField& field, c
   found.parts = std::move(sorted);
   for (std::uint32_t& part : found.of_triangle) part = place[part];
   return found;
+}
+
+std::vector<char> choose_parts(const SurfaceParts& found, const PartChoice& choice) {
+  if (choice.most < 1) throw UsageError("parts must be 1 or more", {}, "parts");
+  std::vector<char> keep(found.parts.size(), 1);
+  for (std::size_t n = 0; n < keep.size(); ++n)
+    if (n >= choice.most || found.parts[n].points < choice.points) keep[n] = 0;
+  if (!keep.empty() && keep[0] == 0)
+    throw UsageError(fmt::format("no part of the surface has {} points near it, the largest has {}: ask for fewer",
+                                 choice.points, found.parts[0].points),
+                     {}, "part_points");
+  return keep;
 }
 
 TriangleMesh keep_parts(const TriangleMesh& mesh, const SurfaceParts& parts, const std::vector<char>& keep) {

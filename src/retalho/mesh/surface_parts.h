@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "retalho/cloud/cloud.h"
@@ -30,6 +31,14 @@ struct SurfaceParts {
 /// threads. Cost: 0.3 us a triangle, and with several parts 2 us a point.
 SurfaceParts find_parts(const TriangleMesh& mesh, const TetraQuadField& field, const PointCloud& points,
                         const Context& context = {});
+
+/// Which parts are wanted: the `most` with the most points, and of them those with at least `points` near them.
+struct PartChoice {
+  std::size_t most = std::numeric_limits<std::size_t>::max();  ///< 1 or more
+  std::size_t points = 0;
+};
+/// One mark a part. Throws UsageError where no part is left.
+std::vector<char> choose_parts(const SurfaceParts& found, const PartChoice& choice);
 
 /// The triangles of the parts that are marked (`keep`: one mark a part) and their vertices, in their order.
 TriangleMesh keep_parts(const TriangleMesh& mesh, const SurfaceParts& parts, const std::vector<char>& keep);

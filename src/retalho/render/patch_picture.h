@@ -2,6 +2,7 @@
 // colours.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "retalho/core/context.h"
@@ -18,6 +19,9 @@ enum class PatchStyle {
   gaussian,   ///< colours of the Gaussian curvature: blue negative (saddle), white none, red positive
   mean,       ///< colours of the mean curvature
 };
+
+/// Their names, in the same order.
+inline constexpr std::array<const char*, 6> kPatchStyles{"shaded", "lines", "isophotes", "zebra", "gaussian", "mean"};
 
 struct PatchPictureOptions {
   PatchStyle style = PatchStyle::lines;

@@ -1,6 +1,9 @@
 #include "retalho/render/tetraquad_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -126,6 +129,24 @@ void check(int width, int height, const TetraQuadPictureOptions& options) {
 }
 
 }  // namespace
+
+CutPlane parse_cut(const std::string& text, const Georef& georef) {
+  CutPlane cut;
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto number = text.size() > 2 ? std::from_chars(text.data() + 2, end, value) : std::from_chars_result{};
+  const bool axis = !text.empty() && text[0] >= 'x' && text[0] <= 'z';
+  if (!axis || text.size() < 3 || (text[1] != '<' && text[1] != '>') || number.ec != std::errc{} || number.ptr != end ||
+      !std::isfinite(value))
+    throw UsageError(fmt::format("the cut '{}' is not an axis, < or >, and a number, such as 'x<0.5'", text), {},
+                     "cut");
+  if (text[0] == 'x') value = georef.to_local({value, 0}).x;
+  if (text[0] == 'y') value = georef.to_local({0, value}).y;
+  const double sign = text[1] == '<' ? 1 : -1;
+  cut.normal = {text[0] == 'x' ? sign : 0, text[0] == 'y' ? sign : 0, text[0] == 'z' ? sign : 0};
+  cut.offset = sign * value;
+  return cut;
+}
 
 double normal_jump(const TetraQuadField& field, const HalfFaces& faces, std::size_t tet, const TetBarycentric& b) {
   const auto corner = static_cast<std::size_t>(std::min_element(b.begin(), b.end()) - b.begin());

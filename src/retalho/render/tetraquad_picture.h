@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "retalho/raster/georef.h"
 #include "retalho/render/image.h"
 #include "retalho/tetraquad/rays.h"
 
@@ -15,6 +16,9 @@ struct CutPlane {
   Vec3 normal;
   double offset = 0;
 };
+
+/// "x<0.5" or "z>3": what is kept, in the coordinates of the CRS. Throws UsageError.
+CutPlane parse_cut(const std::string& text, const Georef& georef = {});
 
 enum class TetraQuadColors {
   plain,         ///< stone outside, copper inside

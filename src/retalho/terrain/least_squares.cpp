@@ -139,4 +139,10 @@ Terrain fit_least_squares(Terrain terrain, const Raster& raster, const LeastSqua
   return terrain;
 }
 
+Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit, const Context& context) {
+  Terrain terrain = make_terrain(std::move(tin), raster, surface, context);
+  if (fit == FitKind::interpolate) return terrain;
+  return fit_least_squares(std::move(terrain), raster, {.heights_only = fit == FitKind::z_only}, context);
+}
+
 }  // namespace retalho

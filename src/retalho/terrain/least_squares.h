@@ -9,11 +9,13 @@
 // system of 3 x 3 blocks, solved by conjugate gradients; no row a cell is stored (docs/algorithms/smooth-fit.md).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
 #include "retalho/core/context.h"
 #include "retalho/raster/raster.h"
+#include "retalho/terrain/fit.h"
 #include "retalho/terrain/terrain.h"
 
 namespace retalho {
@@ -45,5 +47,14 @@ struct LeastSquaresNotes {
 /// about 0.3 us a cell and 20 us a vertex on one thread; memory: 8 bytes a cell and about 2 kB a vertex.
 Terrain fit_least_squares(Terrain terrain, const Raster& raster, const LeastSquaresOptions& options = {},
                           const Context& context = {}, LeastSquaresNotes* notes = nullptr);
+
+/// How the vertices of a grid's triangulation get their data: heights as the grid has them and estimated gradients,
+/// or fitted to every cell.
+enum class FitKind : std::uint8_t { interpolate, least_squares, z_only };
+/// Their names, in the same order.
+inline constexpr std::array<const char*, 3> kFitNames{"interpolate", "least-squares", "z-only"};
+/// make_terrain of a grid's triangulation and, unless it interpolates, the fit.
+Terrain make_fitted(Tin tin, const Raster& raster, const SurfaceOptions& surface, FitKind fit,
+                    const Context& context = {});
 
 }  // namespace retalho

@@ -7,7 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "retalho/core/error.h"
 #include "retalho/core/parallel.h"
+#include "retalho/raster/part.h"
 #include "retalho/visibility/ray_kernel.h"
 #include "retalho/visibility/viewshed.h"
 
@@ -184,7 +186,7 @@ std::vector<float> intervisibility_map(const Raster& raster, const Intervisibili
 
 std::vector<float> exact_intervisibility(const Raster& raster, int stride, const IntervisibilityOptions& options,
                                          const Context& context) {
-  if (stride < 1) throw UsageError(fmt::format("a stride of {} cells: give 1 or more", stride));
+  check_stride(raster, stride);
   std::vector<float> map(raster.cells(), std::numeric_limits<float>::quiet_NaN());
   const ViewshedOptions field{.target_height = options.target_height, .radius = options.radius};
   std::vector<std::size_t> observers;

@@ -34,7 +34,8 @@ std::vector<float> intervisibility_map(const Raster& raster, const Intervisibili
                                        const Context& context = {});
 
 /// The exact number of cells seen from every `stride`-th cell (the middle of each stride x stride block), by one
-/// horizon sweep each; NaN elsewhere. For checks and small grids.
+/// horizon sweep each; NaN elsewhere (thinned() of raster/part.h leaves those cells out). For checks and small grids.
+/// Throws UsageError for a stride that passes a side of the grid.
 std::vector<float> exact_intervisibility(const Raster& raster, int stride, const IntervisibilityOptions& options = {},
                                          const Context& context = {});
 

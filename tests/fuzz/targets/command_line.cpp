@@ -46,7 +46,7 @@ void parse_each(const std::string& word) {
   refuse_or([&] { fuzz::require(app::parse_seconds(word) > 0, "a time that is none"); });
   refuse_or([&] { app::parse_patch_style("--style", word); });
   refuse_or([&] {
-    const CutPlane cut = app::parse_cut(word, {});
+    const CutPlane cut = parse_cut(word);
     fuzz::require(std::isfinite(cut.offset), "a cut that is none");
   });
 }

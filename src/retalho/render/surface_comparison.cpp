@@ -1,20 +1,20 @@
-#include "contour_compare.h"
+#include "retalho/render/surface_comparison.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "fitting.h"
 #include "retalho/core/error.h"
 #include "retalho/level/contour.h"
 #include "retalho/raster/part.h"
 #include "retalho/render/contour_path.h"
-#include "retalho/render/curve_picture.h"
 #include "retalho/render/field.h"
+#include "retalho/terrain/fit.h"
 #include "retalho/tin/refine.h"
 
-namespace retalho::app {
+namespace retalho {
 namespace {
 
 struct Named {
@@ -22,15 +22,14 @@ struct Named {
   ContourSet lines;
 };
 
-std::vector<std::string> draw(const Program& program, const std::vector<Named>& all, const Extent& shown,
-                              const SurfaceComparison& comparison) {
-  CurvePicture picture;
+ComparedSurfaces draw(const std::vector<Named>& all, const Extent& shown, const SurfaceComparison& comparison) {
+  ComparedSurfaces drawn;
+  CurvePicture& picture = drawn.picture;
   const int panels = static_cast<int>(all.size());
   picture.columns = panels <= 3 ? panels : (panels + 1) / 2;
   const double aspect = std::clamp(shown.width() / shown.height(), 0.2, 5.0);
   picture.panel_width = static_cast<int>(std::lround(420 * std::sqrt(aspect)));
   picture.panel_height = static_cast<int>(std::lround(420 / std::sqrt(aspect))) + 16;
-  std::vector<std::string> names;
   for (const Named& one : all) {
     PicturePanel panel;
     panel.caption = one.name;
@@ -49,10 +48,9 @@ std::vector<std::string> draw(const Program& program, const std::vector<Named>& 
       panel.paths.push_back(std::move(path));
     }
     picture.panels.push_back(std::move(panel));
-    names.push_back(one.name);
+    drawn.names.push_back(one.name);
   }
-  write_picture(picture, comparison.output, program.overwrite);
-  return names;
+  return drawn;
 }
 
 }  // namespace
@@ -63,20 +61,18 @@ Raster middle_of(const Raster& raster, int zoom) {
   return part_of(raster, {(raster.columns - columns) / 2, (raster.rows - rows) / 2, columns, rows});
 }
 
-std::vector<std::string> compare_grid_surfaces(const Program& program, const Raster& raster,
-                                               const SurfaceComparison& comparison, const Context& context) {
+ComparedSurfaces compare_grid_surfaces(const Raster& raster, const SurfaceComparison& comparison,
+                                       const Context& context) {
   constexpr std::size_t kMost = 1'000'000;
   if (raster.cells() > kMost)
-    throw UsageError(fmt::format("--compare-surfaces takes every cell, a million at most, not {}: show fewer (--zoom)",
+    throw UsageError(fmt::format("surfaces are compared on every cell, a million at most, not {}: show fewer (zoom)",
                                  raster.cells()),
-                     {}, "--zoom");
+                     {}, "zoom");
   const ContourOptions options{comparison.tolerance, true};
   std::vector<Named> all;
-  for (const char* kind : {"linear", "powell-sabin", "clough-tocher"}) {
-    SurfaceFlags flags;
-    flags.surface = kind;
-    const Terrain terrain = make_terrain(refine_tin(raster, {}, context), raster, resolve(flags, false), context);
-    all.push_back({kind, trace_contours(terrain, comparison.levels, options, context)});
+  for (const SurfaceKind kind : {SurfaceKind::linear, SurfaceKind::powell_sabin, SurfaceKind::clough_tocher}) {
+    const Terrain terrain = make_terrain(refine_tin(raster, {}, context), raster, {.surface = kind}, context);
+    all.push_back({surface_name(kind), trace_contours(terrain, comparison.levels, options, context)});
   }
   const auto bicubic = [&](const std::string& name, const BicubicOptions& how) {
     all.push_back({name, trace_contours(make_bicubic(raster, how, context), comparison.levels, options, context)});
@@ -85,29 +81,26 @@ std::vector<std::string> compare_grid_surfaces(const Program& program, const Ras
     bicubic(fmt::format("bicubic, twist {}", twist_name(twist)), {.twist = twist});
   bicubic("bicubic, natural ends", {.ends = TangentEnds::natural});
   bicubic("bicubic, ringing", {.keep_flats = false});
-  return draw(program, all, extent_of(raster), comparison);
+  return draw(all, extent_of(raster), comparison);
 }
 
-std::vector<std::string> compare_point_surfaces(const Program& program, const ConstrainedTin& tin, const Georef& georef,
-                                                const SurfaceComparison& comparison, const Context& context) {
+ComparedSurfaces compare_point_surfaces(const ConstrainedTin& tin, const Georef& georef,
+                                        const SurfaceComparison& comparison, const Context& context) {
   const ContourOptions options{comparison.tolerance, true};
   std::vector<Named> all;
   Extent shown;
-  const auto add = [&](const std::string& kind, const std::string& gradients) {
-    SurfaceFlags flags;
-    flags.surface = kind;
-    flags.gradients = gradients;
-    SurfaceOptions how = resolve(flags, true);
-    how.creases = tin.edges;
-    const Terrain terrain = make_terrain(tin.tin, georef, how, context);
+  const auto add = [&](SurfaceKind kind, GradientKind gradients) {
+    const Terrain terrain =
+        make_terrain(tin.tin, georef, {.surface = kind, .gradients = gradients, .creases = tin.edges}, context);
     shown = extent_of(terrain);
-    all.push_back({gradients.empty() ? kind : fmt::format("{}, {}", kind, gradients),
-                   trace_contours(terrain, comparison.levels, options, context)});
+    std::string name = surface_name(kind);
+    if (kind != SurfaceKind::linear) name += fmt::format(", {}", gradient_name(gradients));
+    all.push_back({std::move(name), trace_contours(terrain, comparison.levels, options, context)});
   };
-  add("linear", "");
-  for (const char* kind : {"powell-sabin", "clough-tocher"})
-    for (const char* gradients : {"quadratic", "normals"}) add(kind, gradients);
-  return draw(program, all, shown, comparison);
+  add(SurfaceKind::linear, GradientKind::quadratic);
+  for (const SurfaceKind kind : {SurfaceKind::powell_sabin, SurfaceKind::clough_tocher})
+    for (const GradientKind gradients : {GradientKind::quadratic, GradientKind::normals}) add(kind, gradients);
+  return draw(all, shown, comparison);
 }
 
-}  // namespace retalho::app
+}  // namespace retalho

@@ -2,11 +2,13 @@
 // many bytes (`compare --baselines`).
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
-#include "fitting.h"
+#include "retalho/model/comparison.h"
 
-namespace retalho::app {
+namespace retalho {
 
 /// A model to be compared with: its name, numbers and bytes, and how it is written.
 struct Rival {
@@ -19,9 +21,9 @@ struct Rival {
 /// every cell and vertices relocated (the strong one), each with the rival's numbers and with the rival's bytes (within
 /// a hundredth, where whole vertices allow it), written as the rival is. Of a compact rival the greedy one's heights
 /// are fitted while they are rounded. Cost: about five refinements.
-std::vector<ModelReport> flat_baselines(const Rival& rival, const Raster& raster, const Context& context);
+std::vector<ModelReport> flat_baselines(const Rival& rival, const Raster& raster, const Context& context = {});
 
 /// Smooth surfaces refined by their own error beside a flat one of `vertices`: at its numbers, and at its bytes.
-std::vector<ModelReport> smooth_rivals(std::size_t vertices, const Raster& raster, const Context& context);
+std::vector<ModelReport> smooth_rivals(std::size_t vertices, const Raster& raster, const Context& context = {});
 
-}  // namespace retalho::app
+}  // namespace retalho

@@ -1,4 +1,4 @@
-#include "baselines.h"
+#include "retalho/model/baselines.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,14 @@
 #include <cmath>
 #include <functional>
 
+#include "retalho/model/compact.h"
 #include "retalho/model/model.h"
+#include "retalho/terrain/fit.h"
+#include "retalho/terrain/report.h"
 #include "retalho/terrain/surface_refine.h"
 #include "retalho/tin/refine.h"
 
-namespace retalho::app {
+namespace retalho {
 namespace {
 
 constexpr std::size_t kLeast = 4;  // vertices
@@ -116,4 +119,4 @@ std::vector<ModelReport> smooth_rivals(std::size_t vertices, const Raster& raste
   return reports;
 }
 
-}  // namespace retalho::app
+}  // namespace retalho
