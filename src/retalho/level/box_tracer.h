@@ -262,16 +262,16 @@ class BoxTracer {
   RETALHO_TWO_VARIANTS void refine(const Frame& frame, Work& work, Vec2 p, Vec2 q, int depth) {
     const Certificate& c = work.certificate;
     const double need = second_.chord_bound(q - p);
-    double allowed = std::min(tolerance_ * c.m, work.tube);
-    if (need <= allowed || depth == 0) return;
+    const double sure = std::min(tolerance_ * c.m, work.tube);
+    if (need <= sure || depth == 0) return;
     const double m = local_growth(c, p, q, need);
-    allowed = std::min(tolerance_ * m, work.tube);
+    const double allowed = std::min(tolerance_ * m, work.tube);
     if (need <= allowed) return;
     const int pieces = std::clamp(static_cast<int>(std::ceil(0.8 * std::sqrt(need / allowed))), 2, 16);
     Vec2 from = p;
     for (int i = 1; i <= pieces; ++i) {
       const Vec2 to = i == pieces ? q : on_line(work, p + (static_cast<double>(i) / pieces) * (q - p), m);
-      refine(frame, work, from, to, depth - 1);
+      if (second_.chord_bound(to - from) > sure) refine(frame, work, from, to, depth - 1);
       if (i < pieces) {
         const std::uint32_t id = trace_.add(frame.place(to), work.level);
         trace_.next[work.last] = id;

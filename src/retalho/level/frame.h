@@ -23,7 +23,7 @@ struct Frame {
   }
   /// The parameter direction whose image is the unit vector along the gradient with these parameter derivatives; (0, 0)
   /// for no gradient.
-  Vec2 uphill(Vec2 derivatives) const {
+  [[gnu::always_inline]] Vec2 uphill(Vec2 derivatives) const {
     const Vec2 g = gradient(derivatives);
     const double length = norm(g);
     if (!(length > 0) || !std::isfinite(length)) return {};

@@ -13,7 +13,7 @@ struct SecondRanges {
   std::array<double, 2> uu{}, uv{}, vv{};
 
   /// How far the polynomial can be from its chord: max |f - chord| on a segment with this parameter vector.
-  double chord_bound(Vec2 d) const {
+  [[gnu::always_inline]] double chord_bound(Vec2 d) const {
     const double a = d.x * d.x, b = d.y * d.y, m = 2 * d.x * d.y;
     const double low = a * uu[0] + b * vv[0] + (m > 0 ? m * uv[0] : m * uv[1]);
     const double high = a * uu[1] + b * vv[1] + (m > 0 ? m * uv[1] : m * uv[0]);

@@ -183,7 +183,7 @@ struct RectanglePatch {
     if (d.y < 0) r = std::min(r, -p.y / d.y);
     return std::max(r, 0.0);
   }
-  static Vec2 clamp(Vec2 p) { return {std::clamp(p.x, 0.0, 1.0), std::clamp(p.y, 0.0, 1.0)}; }
+  [[gnu::always_inline]] static Vec2 clamp(Vec2 p) { return {std::clamp(p.x, 0.0, 1.0), std::clamp(p.y, 0.0, 1.0)}; }
 
  private:
   /// First differences of the ordinates: along u the first, the second twice and the third of each row; along v from

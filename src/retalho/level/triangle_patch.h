@@ -131,7 +131,7 @@ struct TrianglePatch {
     if (d.x + d.y > 0) r = std::min(r, (1 - p.x - p.y) / (d.x + d.y));
     return std::max(r, 0.0);
   }
-  static Vec2 clamp(Vec2 p) {
+  [[gnu::always_inline]] static Vec2 clamp(Vec2 p) {
     p = {std::max(p.x, 0.0), std::max(p.y, 0.0)};
     const double over = p.x + p.y - 1;
     return over > 0 ? Vec2{std::max(p.x - 0.5 * over, 0.0), std::max(p.y - 0.5 * over, 0.0)} : p;
