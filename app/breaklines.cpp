@@ -25,6 +25,12 @@ void check_breakline_flags(const BreaklineFlags& flags, bool from_points) {
     throw UsageError("--breakline-layer goes with --breaklines", {}, "--breakline-layer");
 }
 
+void check_breakline_budget(const BreaklineFlags& flags, bool budget) {
+  if (flags.given() && budget)
+    throw UsageError("--breaklines keeps every point: leave --max-error, --vertices and --ratio out", {},
+                     "--breaklines");
+}
+
 namespace {
 
 LineLayer read_lines(const Georef& ours, const std::string& input, const std::string& file, const std::string& layer,

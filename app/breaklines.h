@@ -18,6 +18,8 @@ struct BreaklineFlags {
 void add_breakline_flags(CLI::App& command, BreaklineFlags& flags);
 /// Throws UsageError when breaklines are given with an input that is not made of points.
 void check_breakline_flags(const BreaklineFlags& flags, bool from_points);
+/// Throws UsageError when breaklines are given with a budget.
+void check_breakline_budget(const BreaklineFlags& flags, bool budget);
 
 /// All points, and the breaklines if there are any; says what was read and where lines cross or have no height.
 ConstrainedTin triangulate(const Program& program, const PointCloud& cloud, const std::string& input,

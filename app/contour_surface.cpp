@@ -71,7 +71,16 @@ TracedSurface load_surface(const Program& program, const SurfaceChoice& options,
     const PointCloud cloud = load_points(program, options.input, options.points, context);
     SurfaceFlags flags;
     flags.surface = kind;
-    ConstrainedTin made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
+    check_breakline_budget(options.breaklines, options.budget.given());
+    ConstrainedTin made;
+    if (options.budget.given()) {
+      const PointSummary summary = summarize(cloud);
+      const Budget budget =
+          resolve(program, options.budget, cloud.positions.size(), summary.maximum.z - summary.minimum.z);
+      made.tin = refine_points(cloud.positions, {budget.max_error, budget.vertices}, nullptr, context);
+    } else {
+      made = triangulate(program, cloud, options.input, options.breaklines, nullptr, context);
+    }
     SurfaceOptions how = resolve(flags, true);
     how.creases = std::move(made.edges);
     surface.terrain = make_terrain(std::move(made.tin), cloud.georef, how, context);

@@ -136,9 +136,7 @@ Fit fit_points(const Program& program, const Options& options, const SurfaceOpti
   double tolerance = 0;
   std::vector<std::uint32_t> creases;
   if (options.budget.given()) {
-    if (options.breaklines.given())
-      throw UsageError("--breaklines keeps every point: leave --max-error, --vertices and --ratio out", {},
-                       "--breaklines");
+    check_breakline_budget(options.breaklines, true);
     const PointSummary summary = summarize(cloud);
     const Budget budget =
         resolve(program, options.budget, cloud.positions.size(), summary.maximum.z - summary.minimum.z);

@@ -174,10 +174,28 @@ TEST(Contour, BreaklinesRefusedInWords) {
             std::string::npos);
   EXPECT_NE(words("contour p.csv -o x.gpkg --interval 1 --breakline-layer a", 2).find("goes with --breaklines"),
             std::string::npos);
-  EXPECT_NE(
-      words("fit p.csv -o x.retalho --max-error 1 --breaklines far.geojson", 2).find("--breaklines keeps every point"),
-      std::string::npos);
+  for (const char* command : {"fit p.csv -o x.retalho", "contour p.csv -o x.gpkg --interval 1"})
+    EXPECT_NE(words(std::string(command) + " --max-error 1 --breaklines far.geojson", 2)
+                  .find("--breaklines keeps every point"),
+              std::string::npos);
   EXPECT_EQ(folder.entries(), before);
+}
+
+TEST(Contour, ABudgetOfPointsLeavesVerticesOut) {
+  const Hills folder;
+  std::string points = "x,y,z\n";
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 30; ++x) points += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(x) + "\n";
+  folder.put("plane.csv", points);
+  const auto traced = [&](const std::string& budget) {
+    const Outcome outcome = run(
+        folder, "contour plane.csv -o plane.gpkg --overwrite --raw --surface linear --levels 14.5 --json " + budget);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.json()["vertices"].get<int>();
+  };
+  EXPECT_GT(traced(""), 29);                  // a vertex on every edge that it crosses
+  EXPECT_EQ(traced("--max-error 0.001"), 3);  // two triangles
+  EXPECT_EQ(traced("--vertices 4"), 3);
 }
 
 TEST(Contour, NoLevelInReachGivesALayerWithoutFeatures) {
