@@ -10,6 +10,7 @@
 #include "retalho/model/model.h"
 #include "retalho/model/tiled.h"
 #include "retalho/terrain/fit.h"
+#include "retalho/terrain/height_range.h"
 #include "retalho/tiles/source.h"
 #include "retalho/tin/refine.h"
 
@@ -22,9 +23,9 @@ const std::vector<std::string> kEnds{"not-a-knot", "natural"};
 
 void measure(TracedSurface& surface) {
   const Terrain& terrain = *surface.terrain;
-  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
-  surface.low = *low;
-  surface.high = *high;
+  const HeightRange range = height_range(terrain);
+  surface.low = range.low;
+  surface.high = range.high;
   surface.cell =
       terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height) : mean_edge(terrain.tin);
 }

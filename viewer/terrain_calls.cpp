@@ -12,6 +12,7 @@
 #include "retalho/level/contour.h"
 #include "retalho/mesh/terrain_mesh.h"
 #include "retalho/model/model.h"
+#include "retalho/terrain/height_range.h"
 #include "retalho/terrain/quantities.h"
 #include "retalho/visibility/viewshed.h"
 #include "saved_file.h"
@@ -34,16 +35,9 @@ std::string crs_name(const std::string& wkt) {
   return close == std::string::npos ? std::string() : wkt.substr(open + 1, close - open - 1);
 }
 
-struct HeightRange {
-  double low, high;
-};
-HeightRange heights_of(const Terrain& terrain) {
-  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
-  return {*low, *high};
-}
 HeightRange heights_of(const FittedModel& model) {
   if (model.tiles) return {model.tiles->low(), model.tiles->high()};
-  return heights_of(*model.terrain);
+  return height_range(*model.terrain);
 }
 
 /// What the page takes from every coordinate, so that its floats keep their digits: the middle of the file's box. It
@@ -169,7 +163,7 @@ Answer files_call(const Models& models, const std::string& first_view) {
       one["high"] = input.tiles->high();
       one["cell"] = std::min(input.tiles->index().cell_width, input.tiles->index().cell_height);
     } else {
-      const HeightRange range = heights_of(*input.model);
+      const HeightRange range = height_range(*input.model);
       one["low"] = range.low;
       one["high"] = range.high;
       one["cell"] =
@@ -265,7 +259,7 @@ ContourSet contours_of(const FittedModel& model, double interval, double base, c
   const double cell = terrain.grid.columns > 0 ? std::min(terrain.grid.cell_width, terrain.grid.cell_height)
                                                : norm(terrain.tin.points.at(0) - terrain.tin.points.at(1));
   ContourSet set =
-      trace_contours(terrain, shown_levels(heights_of(terrain), interval, base), {.tolerance = 0.1 * cell}, context);
+      trace_contours(terrain, shown_levels(height_range(terrain), interval, base), {.tolerance = 0.1 * cell}, context);
   check_points(set.points.size());
   return set;
 }

@@ -10,6 +10,7 @@
 #include "retalho/core/error.h"
 #include "retalho/model/model.h"
 #include "retalho/model/tiled.h"
+#include "retalho/terrain/height_range.h"
 #include "table.h"
 
 namespace retalho::app {
@@ -94,7 +95,7 @@ Json model_info(const Options& options, const Terrain& terrain) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
-  const auto [lowest, highest] = std::minmax_element(tin.heights.begin(), tin.heights.end());
+  const HeightRange range = height_range(terrain);
   Json result = {{"file", options.file},
                  {"kind", "terrain"},
                  {"surface", surface_name(terrain.kind)},
@@ -110,8 +111,8 @@ Json model_info(const Options& options, const Terrain& terrain) {
   result["tolerance"] = terrain.tolerance > 0 ? Json(terrain.tolerance) : Json(nullptr);
   add_place(result, terrain.georef);
   result["bounds"] = bounds_json(terrain.georef, low, high);
-  result["minimum"] = lowest == tin.heights.end() ? Json(nullptr) : Json(*lowest);
-  result["maximum"] = highest == tin.heights.end() ? Json(nullptr) : Json(*highest);
+  result["minimum"] = tin.heights.empty() ? Json(nullptr) : Json(range.low);
+  result["maximum"] = tin.heights.empty() ? Json(nullptr) : Json(range.high);
   if (const GridDomain& grid = terrain.grid; grid.columns > 0) {
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     result["grid"] = {{"columns", grid.columns},

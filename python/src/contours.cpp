@@ -16,6 +16,7 @@
 #include "retalho/level/contour.h"
 #include "retalho/level/write_vector.h"
 #include "retalho/terrain/bicubic.h"
+#include "retalho/terrain/height_range.h"
 #include "terrain.h"
 
 namespace py = pybind11;
@@ -62,11 +63,11 @@ std::shared_ptr<Lines> finish(ContourSet set, ContourExtras extras, const Georef
 
 std::shared_ptr<Lines> trace_model(const TerrainModel& model, const AskedLines& asked, const Context& context) {
   const Terrain& terrain = model.terrain();
-  const auto [low, high] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
+  const HeightRange range = height_range(terrain);
   const ContourOptions options{asked.tolerance.value_or(0.1 * line_cell(terrain)), asked.simplify};
   ContourExtras extras;
   extras.want_bands = asked.bands;
-  ContourSet set = trace_contours(terrain, levels_of(asked, *low, *high), options, context, &extras);
+  ContourSet set = trace_contours(terrain, levels_of(asked, range.low, range.high), options, context, &extras);
   return finish(std::move(set), std::move(extras), terrain.georef, asked);
 }
 

@@ -23,6 +23,7 @@
 #include "retalho/render/contour_sheet.h"
 #include "retalho/render/perspective.h"
 #include "retalho/render/surface_comparison.h"
+#include "retalho/terrain/height_range.h"
 #include "running.h"
 #include "terrain.h"
 
@@ -147,9 +148,9 @@ Sheet make_sheet(const Surface& surface, const AskedLines& asked, bool curves, c
     sheet.content.height_unit = surface.raster->height_unit;
   } else {
     const Terrain& terrain = surface.model->terrain();
-    const auto [least, most] = std::minmax_element(terrain.tin.heights.begin(), terrain.tin.heights.end());
-    low = *least;
-    high = *most;
+    const HeightRange range = height_range(terrain);
+    low = range.low;
+    high = range.high;
     cell = line_cell(terrain);
   }
   const std::vector<double> levels = levels_of(asked, low, high);

@@ -52,6 +52,7 @@ KNOWN = {
     "reconstruct": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "20"],
     "reconstruct --fit cg": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "20", "--fit", "cg"],
     "reconstruct --fit local": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--resolution", "20", "--fit", "local"],
+    "reconstruct --adaptive": ["reconstruct", "ball.xyz", "-o", "o.retalho", "--adaptive", "15000"],
     "mesh, TetraQuad": ["mesh", "ball.retalho", "-o", "o.ply"],
     "render, TetraQuad": ["render", "ball.retalho", "-o", "o.png", "--size", "400x400"],
     "curve": ["curve", "line.json"],

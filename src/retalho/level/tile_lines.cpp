@@ -15,6 +15,7 @@
 #include "retalho/level/tile_outline.h"
 #include "retalho/level/trace_terrain.h"
 #include "retalho/level/void_border.h"
+#include "retalho/terrain/height_range.h"
 
 namespace retalho {
 namespace {
@@ -76,8 +77,10 @@ SurfaceRange measure_range(const TileSource& tiles, const Context& context) {
         slots[s] = {};
         if (tile == nullptr || tile->terrain.tin.triangles.empty()) return;
         const Tin& tin = tile->terrain.tin;
-        const auto [low, high] = std::minmax_element(tin.heights.begin(), tin.heights.end());
-        slots[s] = {*low, *high, terrain_quanta(tile->terrain, build_edges(tin), inside), true};
+        const GridDomain& grid = tile->terrain.grid;
+        const Vec2 origin{tile->first_column * grid.cell_width, -tile->first_row * grid.cell_height};
+        const HeightRange heights = height_range(tile->terrain, origin);
+        slots[s] = {heights.low, heights.high, terrain_quanta(tile->terrain, build_edges(tin), inside), true};
       },
       [&](const TilePlace&, std::size_t s) {
         const SurfaceRange& part = slots[s];

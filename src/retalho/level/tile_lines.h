@@ -11,7 +11,7 @@ namespace retalho {
 
 /// What must be known of all tiles before the first one is traced.
 struct SurfaceRange {
-  double low = 0, high = 0;  ///< of the vertices; the surface may go a little beyond
+  double low = 0, high = 0;  ///< as height_range of each tile
   double per_unit = 1;       ///< quanta a height unit of the fixed-point surface that is traced
   bool data = false;         ///< is there any?
 };

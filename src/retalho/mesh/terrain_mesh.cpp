@@ -12,6 +12,7 @@
 #include "retalho/mesh/mesh_frame.h"
 #include "retalho/mesh/patch_cutter.h"
 #include "retalho/terrain/creases.h"
+#include "retalho/terrain/height_range.h"
 
 namespace retalho {
 namespace {
@@ -338,10 +339,9 @@ MeshFrame mesh_frame(const Georef& georef) {
 }
 
 double mesh_tolerance(const Terrain& terrain, const TerrainMeshOptions& options) {
-  const auto& heights = terrain.tin.heights;
-  if (heights.empty()) throw BadInput("a terrain without vertices has no mesh");
-  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-  return mesh_tolerance(*low, *high, options);
+  if (terrain.tin.heights.empty()) throw BadInput("a terrain without vertices has no mesh");
+  const HeightRange range = height_range(terrain);
+  return mesh_tolerance(range.low, range.high, options);
 }
 
 double mesh_tolerance(double low, double high, const TerrainMeshOptions& options) {

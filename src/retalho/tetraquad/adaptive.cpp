@@ -66,6 +66,10 @@ class AdaptiveFit {
   }
 
   TetraQuad run() {
+    // Without a tolerance the budget is spent, about a vertex of the band for six of its coefficients, where there are
+    // points enough.
+    if (adaptive_.max_error == 0)
+      check_need(std::min(adaptive_.coefficients / 6, samples_.size()), samples_.size(), options_, "adaptive");
     for (int level = 0; level < adaptive_.start_level; ++level) {
       const auto counts = count_samples();
       std::vector<std::uint32_t> chosen;
@@ -137,6 +141,7 @@ class AdaptiveFit {
     surface.georef = georef_;
     surface.mesh =
         make_tet_mesh(samples_.origin, samples_.step, std::make_shared<TetForest>(forest_), band(count_samples()));
+    check_need(surface.mesh.lattice.size(), samples_.size(), options_, "adaptive");
     const HalfFaces faces(surface.mesh.tets, surface.mesh.lattice.size());
     const SampleRuns runs(samples_, surface.mesh, context_);
     solve_surface(surface, faces, runs, bins(), before, weights_, options_, report_, context_);

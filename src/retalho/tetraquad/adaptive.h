@@ -22,7 +22,7 @@ struct TetraQuadAdaptiveOptions {
 /// Fit, sum |C| over the points of the tetrahedra round each edge that would be cut, cut the edges with the largest
 /// sums, make the mesh conform, fit again. `options.resolution`, `split` and `growth` are not used. Lighter smoothing
 /// than on a grid is right for clean points: smoothness 0.1. Throws as fit_tetraquad does. Cost: about four times the
-/// last fit.
+/// last fit. Throws BadInput too where the budget, or a pass, does not fit into memory (core/memory.h).
 TetraQuad fit_tetraquad_adaptive(const PointCloud& cloud, const TetraQuadAdaptiveOptions& adaptive = {},
                                  const TetraQuadFitOptions& options = {.smoothness = 0.1},
                                  TetraQuadFitReport* report = nullptr, const Context& context = {});

@@ -8,23 +8,11 @@
 #include <unordered_set>
 
 #include "retalho/core/error.h"
-#include "retalho/core/memory.h"
 #include "retalho/tetraquad/fit_parts.h"
 #include "retalho/tetraquad/growth.h"
 
 namespace retalho {
 namespace {
-
-/// Refuses a fit that does not fit into memory. Bytes are measured (docs/limits.md); factors of a band along a surface
-/// grow as n log n.
-void check_need(std::size_t vertices, std::size_t points, const TetraQuadFitOptions& options) {
-  const auto n = static_cast<double>(vertices);
-  const double a_vertex = options.solver == TetraQuadSolver::local ? 5000
-                          : options.solver == TetraQuadSolver::cg  ? 9500
-                                                                   : 20000 + 5500 * std::log2(std::max(n, 2.0));
-  check_memory(kProcessMemory + a_vertex * n + 200 * static_cast<double>(points),
-               fmt::format("a fit of {} vertices (resolution {})", vertices, options.resolution), {});
-}
 
 constexpr int kReach = 2;  // cells that the surface may be continued beyond those with points
 
@@ -71,7 +59,7 @@ TetraQuad fit(const PointCloud& cloud, const TetraQuadFitOptions& options, const
   TetraQuad surface;
   surface.georef = cloud.georef;
   surface.mesh = make_tet_mesh(samples.origin, samples.step, options.split, first_band(with_points, options.split));
-  check_need(surface.mesh.lattice.size(), samples.size(), options);
+  check_need(surface.mesh.lattice.size(), samples.size(), options, fmt::format("resolution {}", options.resolution));
   HalfFaces faces(surface.mesh.tets, surface.mesh.lattice.size());
   solve_surface(surface, faces, SampleRuns(samples, surface.mesh, context), bins ? &*bins : nullptr, before, weights,
                 options, report, context);

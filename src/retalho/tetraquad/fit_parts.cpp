@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "retalho/core/error.h"
+#include "retalho/core/memory.h"
 #include "retalho/tetraquad/growth.h"
 #include "retalho/tetraquad/local_fit.h"
 
@@ -27,6 +28,15 @@ void check_options(const TetraQuadFitOptions& options) {
     throw UsageError("the weights of the fit must be positive numbers", {}, "--smoothness");
   if (!(options.cg_tolerance > 0 && options.cg_tolerance < 1))
     throw UsageError("the tolerance of conjugate gradients lies between 0 and 1", {}, "--fit");
+}
+
+void check_need(std::size_t vertices, std::size_t points, const TetraQuadFitOptions& options, const std::string& how) {
+  const auto n = static_cast<double>(vertices);
+  const double a_vertex = options.solver == TetraQuadSolver::local ? 5000
+                          : options.solver == TetraQuadSolver::cg  ? 9500
+                                                                   : 20000 + 5500 * std::log2(std::max(n, 2.0));
+  check_memory(kProcessMemory + a_vertex * n + 200 * static_cast<double>(points),
+               fmt::format("a fit of {} vertices ({})", vertices, how), {});
 }
 
 Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport& report) {

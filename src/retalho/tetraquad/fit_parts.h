@@ -1,6 +1,8 @@
 // What the fits on a grid and on an adaptive mesh share. Internal to the room.
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "retalho/tetraquad/closing.h"
@@ -15,6 +17,10 @@ void check_options(const TetraQuadFitOptions& options);
 /// The lattice of the fit and the points in it. Throws BadInput for points that make no surface; the report gets their
 /// counts and warnings.
 Samples take_samples(const PointCloud& cloud, const TetraQuadFitOptions& options, TetraQuadFitReport& report);
+
+/// Throws BadInput for a fit of so many vertices and points that does not fit into memory (core/memory.h); `how` says
+/// what made them so many. Bytes are measured (docs/limits.md); factors of a band along a surface grow as n log n.
+void check_need(std::size_t vertices, std::size_t points, const TetraQuadFitOptions& options, const std::string& how);
 
 /// `area`: that holds points, in steps^2.
 EnergyWeights weights_of(const TetraQuadFitOptions& options, double area, std::size_t samples);
