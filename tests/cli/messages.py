@@ -192,7 +192,7 @@ ROWS = [
     ("curve c.json -o o.svg --cut 1 0", 2, "the part from 1 to 0 is empty"), ("curve c.json -o o.xyz", 2, "must end in"),
     ("fit g.asc -o .. --max-error 1", 2, "must end in .retalho"), ("info", 2, "FILE is required"),
     ("contour utm.retalho -o o.gpkg --levels 5 --area 1,1,0,0", 2, "has no option"), ("compare g.asc utm.retalho", 3, "no valid cell of the grid lies on the model"),
-    ("contour million.vrt --interval 50 --compare-surfaces o.png --zoom 0", 2, "takes every cell, a million at most, not 1100000: show fewer (--zoom)"),
+    ("contour million.vrt --interval 50 --compare-surfaces o.png --zoom 0", 2, "compared on every cell, a million at most, not 1100000: show fewer (--zoom)"),
     ("contour g.asc -o o.svg --interval 5 --sheet 30x30", 2, "is no sheet: A0 to A6, or WIDTHxHEIGHT in mm, 80 to 5000 each (297x210)"),
     ("contour g.asc -o o.pdf --interval 5 --title \udcff", 5, "cannot draw the sheet: input string not valid UTF-8"), ("RETALHO_FONT=none.ttf render g.asc -o o.png", 4, "cannot read the font 'none.ttf': install fonts-dejavu-core"),
     ("GDAL_SKIP=DXF contour g.asc -o o.dxf --interval 5", 5, "this GDAL has no driver DXF"), ("GDAL_SKIP=DXF curve c.json -o o.dxf --flatten 0.1", 5, "this GDAL has no driver DXF"),

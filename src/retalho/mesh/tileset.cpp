@@ -218,26 +218,40 @@ double lattice_of(double half) {
   return step;
 }
 
-/// The folder, made where it is missing, if tileset.json is not there or may be replaced.
-void open_folder(const fs::path& root, bool overwrite) {
-  const fs::path index = root / "tileset.json";
-  if (fs::exists(index) && !overwrite)
-    throw CannotWrite(fmt::format("'{}' exists: --overwrite replaces it", index.string()), index.string());
-  std::error_code ec;
-  fs::create_directories(root, ec);
-  if (ec) throw CannotWrite(fmt::format("cannot make the folder '{}': {}", root.string(), ec.message()), root.string());
-}
+/// The folder, made where it is missing, if tileset.json is not there or may be replaced. One that was made goes again,
+/// unless something stands in it, where the work ends before its index is written.
+class OutputFolder {
+ public:
+  OutputFolder(fs::path root, bool overwrite) : root_(std::move(root)) {
+    const fs::path index = root_ / "tileset.json";
+    if (fs::exists(index) && !overwrite)
+      throw CannotWrite(fmt::format("'{}' exists: --overwrite replaces it", index.string()), index.string());
+    std::error_code ec;
+    made_ = fs::create_directories(root_, ec);
+    if (ec)
+      throw CannotWrite(fmt::format("cannot make the folder '{}': {}", root_.string(), ec.message()), root_.string());
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code ec;
+    if (made_) fs::remove(root_, ec);  // of an empty folder only
+  }
+
+ private:
+  fs::path root_;
+  bool made_ = false;
+};
 
 /// A name in the folder for files that have none once they are open.
 std::string hidden_in(const fs::path& root, const char* what) {
   return (root / fmt::format(".tileset-{}-{}", getpid(), what)).string();
 }
 
-GlobeNotes write_squares(const MeshStream& mesh, const Georef& georef, const fs::path& root,
+GlobeNotes write_squares(const MeshStream& mesh, const Georef& georef, const Geodetic& geodetic, const fs::path& root,
                          const TilesetOptions& options, double tolerance, bool overwrite, const Context& context) {
   if (mesh.triangles == 0) throw BadInput("the model has no triangle with data");
   const std::string index = (root / "tileset.json").string();
-  const Geodetic geodetic(georef.crs_wkt);
   const Frame frame = frame_of(mesh, geodetic, georef);
   MeshSpool placed(hidden_in(root, "placed"), index);
   place_on_globe(mesh, geodetic, georef, frame, placed);
@@ -292,24 +306,26 @@ GlobeNotes write_squares(const MeshStream& mesh, const Georef& georef, const fs:
 GlobeNotes write_tileset(const Terrain& terrain, const std::string& folder, const TilesetOptions& options,
                          bool overwrite, const Context& context) {
   if (options.triangles < 1) throw UsageError("a tile needs at least one triangle");
+  const Geodetic geodetic(terrain.georef.crs_wkt);
   const double tolerance = mesh_tolerance(terrain, {.tolerance = options.tolerance});
   const TriangleMesh mesh = mesh_terrain(terrain, {.tolerance = tolerance}, context);
-  open_folder(folder, overwrite);
-  return write_squares(stream_of(mesh), terrain.georef, folder, options, tolerance, overwrite, context);
+  const OutputFolder made(folder, overwrite);
+  return write_squares(stream_of(mesh), terrain.georef, geodetic, folder, options, tolerance, overwrite, context);
 }
 
 GlobeNotes write_tileset(const TileSource& tiles, const std::string& folder, const TilesetOptions& options,
                          bool overwrite, const Context& context) {
   if (options.triangles < 1) throw UsageError("a tile needs at least one triangle");
+  const Geodetic geodetic(tiles.georef.crs_wkt);
   const VertexBox box = vertex_box(tiles, context);
   if (!box.data) throw BadInput("the model has no triangle with data");
   const double tolerance = mesh_tolerance(box.low.z, box.high.z, {.tolerance = options.tolerance});
-  open_folder(folder, overwrite);
+  const OutputFolder made(folder, overwrite);
   MeshSpool spool(hidden_in(folder, "mesh"), (fs::path(folder) / "tileset.json").string());
   spool_tile_mesh(tiles, tolerance, spool, context);
   MeshStream stream = spool.stream();
   stream.offset = mesh_frame(tiles.georef).offset;
-  return write_squares(stream, tiles.georef, folder, options, tolerance, overwrite, context);
+  return write_squares(stream, tiles.georef, geodetic, folder, options, tolerance, overwrite, context);
 }
 
 }  // namespace retalho

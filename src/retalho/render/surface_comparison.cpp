@@ -65,9 +65,9 @@ ComparedSurfaces compare_grid_surfaces(const Raster& raster, const SurfaceCompar
                                        const Context& context) {
   constexpr std::size_t kMost = 1'000'000;
   if (raster.cells() > kMost)
-    throw UsageError(fmt::format("surfaces are compared on every cell, a million at most, not {}: show fewer (zoom)",
+    throw UsageError(fmt::format("surfaces are compared on every cell, a million at most, not {}: show fewer (--zoom)",
                                  raster.cells()),
-                     {}, "zoom");
+                     {}, "--zoom");
   const ContourOptions options{comparison.tolerance, true};
   std::vector<Named> all;
   for (const SurfaceKind kind : {SurfaceKind::linear, SurfaceKind::powell_sabin, SurfaceKind::clough_tocher}) {

@@ -132,6 +132,7 @@ std::vector<float> intervisibility_map(const Raster& raster, const Intervisibili
   std::vector<float> map(raster.cells(), 1.0F);  // every cell sees itself
   const double step = 2 * std::numbers::pi / options.directions;
   double done = 0;
+  context.report("intervisibility", done);  // who stops the work from here need not wait for its first part
   for (const Orientation o : {Orientation{false, false}, {true, false}, {false, true}, {true, true}}) {
     RayGrid grid = lay_out(raster, o);
     const double major = o.along_rows ? raster.cell_height : raster.cell_width,
