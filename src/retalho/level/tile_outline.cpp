@@ -100,15 +100,18 @@ std::size_t OutlineArea::slice(double y) const {
   return static_cast<std::size_t>(std::clamp((y - low_) * per_slice_, 0.0, static_cast<double>(slices_.size()) - 1));
 }
 
-/// The next piece to the west decides: of one that runs south the area lies to the east.
+/// The next piece to the west decides, just above the place where several start from one point: of one that runs south
+/// the area lies to the east.
 bool OutlineArea::holds(Vec2 p) const {
-  double best = -std::numeric_limits<double>::infinity();
+  double best = -std::numeric_limits<double>::infinity(), best_lean = best;
   bool inside = false;
   for (const Edge& e : slices_[slice(p.y)]) {
     if ((e.from.y <= p.y) == (e.to.y <= p.y)) continue;
-    const double x = e.from.x + (p.y - e.from.y) / (e.to.y - e.from.y) * (e.to.x - e.from.x);
-    if (x > p.x || x <= best) continue;
+    const double lean = (e.to.x - e.from.x) / (e.to.y - e.from.y);
+    const double x = p.y == e.from.y ? e.from.x : p.y == e.to.y ? e.to.x : e.from.x + (p.y - e.from.y) * lean;
+    if (x > p.x || x < best || (x == best && lean <= best_lean)) continue;
     best = x;
+    best_lean = lean;
     inside = e.from.y > e.to.y;
   }
   return inside;
