@@ -115,7 +115,7 @@ void add_crease_flags(CLI::App& command, SurfaceFlags& flags) {
           "Grids, --vertices or --ratio: edges that the surface may fold along (ridges of roofs, kerbs, shores: a "
           "fold, no vertical wall): none (default), auto: in place of vertices, where that is nearer to the grid at as "
           "many numbers, or a vector layer with the lines. --format compact: auto (the default with --max-error) folds "
-          "at vertices where that saves bytes, none keeps the surface smooth")
+          "at vertices beside steps, none keeps the surface smooth")
       ->type_name("auto|none|FILE");
   command.add_option("--crease-layer", flags.crease_layer, "Of --creases FILE: which layer")->type_name("NAME");
 }

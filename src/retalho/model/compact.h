@@ -21,7 +21,7 @@ struct CompactOptions {
   double height_step = 0;     ///< 0: chosen, by max_error or else by the fit's own error
   double slope_weight = 0.1;  ///< as in LeastSquaresOptions; not of heights_only
   std::optional<bool> folds = {};  ///< clough_tocher: may vertices be folded (terrain/folded_surface.h)? If not, the
-                                   ///< surface is smooth everywhere. Unset: with max_error, where it saves bytes, yes;
+                                   ///< surface is smooth everywhere. Unset: with max_error yes, whatever it saves;
                                    ///< with a budget no. Not of heights_only
   Effort effort = Effort::normal;  ///< of the refinement
 };
