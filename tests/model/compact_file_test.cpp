@@ -171,6 +171,19 @@ Outcome read(const std::string& bytes) {
   }
 }
 
+TEST(CompactFile, AVersionThatDoesNotGoWithTheFoldsIsRefused) {
+  for (const Sample& s : samples()) {
+    std::string changed = s.encode().bytes;
+    changed[4] = static_cast<char>(3 - changed[4]);
+    try {
+      decode_model(sealed_anew(changed));
+      ADD_FAILURE() << "was read";
+    } catch (const CannotRead& e) {
+      EXPECT_NE(std::string(e.what()).find("the version is not the one of its kind of surface"), std::string::npos);
+    }
+  }
+}
+
 TEST(CompactFile, ChangesPastTheChecksumGiveAnErrorOrASoundModel) {
   std::size_t refused = 0, tried = 0;
   for (const Sample& s : samples()) {

@@ -33,6 +33,11 @@ std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(XXH64_digest(&state));
 }
 
+/// The version of files whose vertices are folded, or not.
+int version_for(bool folds) {
+  return folds ? 2 : 1;
+}
+
 std::string seal_compact(std::string_view content, int version) {
   std::string out(kSignature);
   out.push_back(static_cast<char>(version));
@@ -276,7 +281,7 @@ CompactEncoding encode_compact(const CompactFrameFacts& facts, const std::vector
   std::string content = header.bytes() + coder.finish();
   const std::uint64_t least = cells.size() > kFreeVertices ? (cells.size() - kFreeVertices) / kVerticesAByte + 1 : 0;
   if (content.size() - header.bytes().size() < least) content.resize(header.bytes().size() + least, '\0');
-  result.bytes = seal_compact(content, folds ? 2 : 1);
+  result.bytes = seal_compact(content, version_for(folds));
   result.terrain = assemble(read, payload);
   if (const std::string fault = find_fault(result.terrain, true); !fault.empty())
     throw BadInput("this terrain has no compact form: " + fault);
@@ -288,6 +293,8 @@ Terrain decode_compact(std::string_view bytes) {
   std::uint64_t vertices = 0;
   bool folds = false;
   const CompactFrameFacts facts = read_header(reader, vertices, folds);
+  if (bytes[4] != version_for(folds))
+    throw CannotRead("damaged: the version is not the one of its kind of surface", {}, "format");
   if (const std::string fault = fault_of(facts); !fault.empty()) throw CannotRead("no terrain: " + fault, {}, "header");
   BitCoder coder(reader.rest());
   try {
