@@ -94,7 +94,7 @@ SurfaceSize bound_surface(const Raster& raster, int block_rows, const Context& c
     // A third of both tangents, a ninth of the twist.
     const double inside = own.height + around.beside + around.below + 2 * steep;
     const double at_ends = own.ends + 3 * around.beside + around.below + 6 * steep;
-    sure = sure && !around.voids && std::max(inside, at_ends) * (1 + 1e-9) < limit;
+    sure = sure && !around.voids && std::max(inside, at_ends) * (1 + 1e-6) < limit;
     if (!sure) size.unsure.push_back(block);
   }
   return size;

@@ -20,7 +20,7 @@ namespace {
 }  // namespace
 
 MeshFile::MeshFile(const std::string& path, std::string name)
-    : name_(std::move(name)), number_(open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600)) {
+    : name_(std::move(name)), number_(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600)) {
   if (number_ < 0) fail(name_);
   unlink(path.c_str());
 }

@@ -88,6 +88,7 @@ class Loop {
     if (folded_.empty()) return;
     constexpr double kGradientBits = 20;  // in the terms of kThrift; it has about nine
     for (std::uint32_t v = 0; v < cells_.size(); ++v) {
+      if (v % 64 == 0) context_.check();
       if (folded_[v] != 0) continue;
       const double height = fit_.height(v), step = steps_.height[v];
       double least = fit_.star_errors(v, height, fit_.gradient(v), tolerance_).squares + kGradientBits * a_bit;
