@@ -2,13 +2,16 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "retalho/core/atomic_file.h"
 #include "retalho/raster/io.h"
 #include "retalho/tiles/plan.h"
 #include "support/support.h"
@@ -34,6 +37,15 @@ inline Raster hills(int columns, int rows, bool voids) {
     }
   raster.heights = std::move(heights);
   return raster;
+}
+
+/// All files under a folder, by their names below it.
+inline std::map<std::string, std::string> contents(const std::string& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      all[entry.path().lexically_relative(folder).string()] = read_file(entry.path().string());
+  return all;
 }
 
 /// A kind of tiled model, and how a test's name says it.

@@ -21,15 +21,8 @@
 namespace retalho {
 namespace {
 
-namespace fs = std::filesystem;
 using Made = test::MadeTiles;
-
-std::map<std::string, std::string> contents(const std::string& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : fs::directory_iterator(folder))
-    all[entry.path().filename().string()] = read_file(entry.path().string());
-  return all;
-}
+using test::contents;
 
 TEST(RefinedTiles, AreBetterThanFlatRefinedOnesWithNoMoreVertices) {
   for (const SurfaceKind surface : {SurfaceKind::linear, SurfaceKind::clough_tocher})

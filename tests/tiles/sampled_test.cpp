@@ -23,17 +23,8 @@
 namespace retalho {
 namespace {
 
-namespace fs = std::filesystem;
 using Made = test::MadeTiles;
-
-/// All files under a folder, by their names below it.
-std::map<std::string, std::string> contents(const std::string& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
-      all[entry.path().lexically_relative(folder).string()] = read_file(entry.path().string());
-  return all;
-}
+using test::contents;
 
 constexpr const char* kUtm =
     "PROJCS[\"WGS 84 / UTM zone 33N\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
@@ -41,14 +32,19 @@ constexpr const char* kUtm =
     "PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",15],PARAMETER[\"scale_factor\",0.9996],"
     "PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]";
 
+/// Tiles with a CRS, in `folder`/tiles.
+void make_utm_tiles(const test::ScratchFolder& folder, bool voids) {
+  Raster raster = test::hills(131, 98, voids);
+  raster.georef.crs_wkt = kUtm;
+  raster.georef.unit = "metre";
+  write_raster(raster, folder / "dem.tif");
+  make_tiles(plan_tiles(folder / "dem.tif", {.size = 40, .max_error = 1.5}), folder / "tiles", 2, false);
+}
+
 TEST(SampledTiles, OnTheGlobeAreTheJoinedModels) {
   for (const bool voids : {false, true}) {
     const test::ScratchFolder folder;
-    Raster raster = test::hills(131, 98, voids);
-    raster.georef.crs_wkt = kUtm;
-    raster.georef.unit = "metre";
-    write_raster(raster, folder / "dem.tif");
-    make_tiles(plan_tiles(folder / "dem.tif", {.size = 40, .max_error = 1.5}), folder / "tiles", 2, false);
+    make_utm_tiles(folder, voids);
     const auto whole = std::get<Terrain>(load_model(folder / "tiles"));
     const QuantizedMeshOptions options{.tolerance = 0.5, .level = 15, .gzip = false};
     const GlobeNotes joined = write_quantized_mesh(TerrainEvaluator(whole), folder / "joined", options);
@@ -88,11 +84,7 @@ TEST(SampledTiles, OnTheGlobeAreTheJoinedModels) {
 TEST(SampledTiles, AsThreeDTilesAreTheJoinedModelsFiles) {
   for (const bool voids : {false, true}) {
     const test::ScratchFolder folder;
-    Raster raster = test::hills(131, 98, voids);
-    raster.georef.crs_wkt = kUtm;
-    raster.georef.unit = "metre";
-    write_raster(raster, folder / "dem.tif");
-    make_tiles(plan_tiles(folder / "dem.tif", {.size = 40, .max_error = 1.5}), folder / "tiles", 2, false);
+    make_utm_tiles(folder, voids);
     const TilesetOptions options{.tolerance = 0.5, .triangles = 1000};
     const GlobeNotes joined =
         write_tileset(std::get<Terrain>(load_model(folder / "tiles")), folder / "joined", options);

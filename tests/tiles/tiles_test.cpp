@@ -32,15 +32,9 @@ namespace {
 
 using test::hills;
 using Made = test::MadeTiles;
+using test::contents;
 
 namespace fs = std::filesystem;
-
-std::map<std::string, std::string> contents(const std::string& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : fs::directory_iterator(folder))
-    all[entry.path().filename().string()] = read_file(entry.path().string());
-  return all;
-}
 
 /// Vertices by their cell of the whole grid.
 using Vertices = std::map<std::pair<long long, long long>, std::pair<double, Vec2>>;
