@@ -58,6 +58,9 @@ TracedSurface load_surface(const Program& program, const SurfaceChoice& options,
   if (model) {
     if (!options.kind.empty())
       throw UsageError("a model has its surface already: --surface is for grids and points", {}, "--surface");
+    if (options.budget.given())
+      throw UsageError(
+          "a model has its vertices already: --max-error, --vertices and --ratio are for grids and points");
     if (!options.joined && is_tiled_model(options.input)) {
       open_tiles(surface, options, context);
       return surface;

@@ -72,6 +72,9 @@ std::vector<std::string> compare(const Program& program, const Options& options,
     write_picture(compared.picture, options.compare, program.overwrite);
     return compared.names;
   };
+  if (options.surface.budget.given())
+    throw UsageError("--compare-surfaces draws every cell or point: leave --max-error, --vertices and --ratio out", {},
+                     "--compare-surfaces");
   if (is_model_file(options.surface.input))
     throw UsageError("a model has its surface already: --compare-surfaces is for grids and points", {},
                      "--compare-surfaces");

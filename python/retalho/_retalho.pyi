@@ -318,7 +318,8 @@ def fit_compact(
     z: Heights, *, transform: ArrayLike | None = None, crs: Crs | None = None, nodata: float | None = None,
     max_error: float | None = None, vertices: int | None = None, ratio: float | None = None,
     surface: Literal["linear", "clough-tocher"] = ..., fit: Literal["least-squares", "z-only"] = ...,
-    effort: Literal["fast", "normal", "best"] = ..., threads: int = 0, progress: Progress | None = None,
+    creases: Literal["auto", "none"] | None = None, effort: Literal["fast", "normal", "best"] = ...,
+    threads: int = 0, progress: Progress | None = None,
 ) -> bytes: ...
 def fit_points(
     points: ArrayLike, *, crs: Crs | None = None, max_error: float | None = None, vertices: int | None = None,

@@ -23,7 +23,7 @@ namespace retalho::python {
 namespace {
 
 CompactOptions compact_options(const AskedBudget& asked, const std::string& surface, const std::string& fit,
-                               const std::string& effort) {
+                               const std::optional<std::string>& creases, const std::string& effort) {
   CompactOptions options;
   if (!asked.given())
     throw UsageError("give max_error, vertices or both; ratio is vertices as a share of the cells", {}, "max_error");
@@ -39,6 +39,11 @@ CompactOptions compact_options(const AskedBudget& asked, const std::string& surf
     throw UsageError("fit='z-only' is for surface='clough-tocher'", {}, "fit");
   options.surface = *kind;
   options.heights_only = fit == "z-only";
+  if (creases && *creases != "auto" && *creases != "none")
+    throw UsageError("creases of a compact file must be 'auto' or 'none', not '" + *creases + "'", {}, "creases");
+  if (creases == "auto" && (*kind == SurfaceKind::linear || options.heights_only))
+    throw UsageError("creases='auto' folds vertices that have gradients: leave surface and fit out", {}, "creases");
+  if (creases) options.folds = *creases == "auto";
   if (effort != "fast" && effort != "normal" && effort != "best")
     throw UsageError("effort must be 'fast', 'normal' or 'best', not '" + effort + "'", {}, "effort");
   options.effort = effort == "fast" ? Effort::fast : effort == "best" ? Effort::best : Effort::normal;
@@ -62,10 +67,10 @@ void add_formats(py::module_& module) {
       "fit_compact",
       [](const py::object& z, const py::object& transform, const py::object& crs, const py::object& nodata,
          std::optional<double> max_error, std::optional<long long> vertices, std::optional<double> ratio,
-         const std::string& surface, const std::string& fit, const std::string& effort, int threads,
-         const py::object& progress) {
+         const std::string& surface, const std::string& fit, const std::optional<std::string>& creases,
+         const std::string& effort, int threads, const py::object& progress) {
         const AskedBudget asked{max_error, ratio, vertices};
-        CompactOptions options = compact_options(asked, surface, fit, effort);
+        CompactOptions options = compact_options(asked, surface, fit, creases, effort);
         const Running running{threads, progress};
         const auto raster = raster_of(z, {transform, crs, nodata}, running);
         const CompactModel model = run(running, [&](const Context& context) {
@@ -79,10 +84,13 @@ void add_formats(py::module_& module) {
       py::arg("z"), py::kw_only(), py::arg("transform") = py::none(), py::arg("crs") = py::none(),
       py::arg("nodata") = py::none(), py::arg("max_error") = py::none(), py::arg("vertices") = py::none(),
       py::arg("ratio") = py::none(), py::arg("surface") = "clough-tocher", py::arg("fit") = "least-squares",
-      py::arg("effort") = "normal", py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("creases") = py::none(), py::arg("effort") = "normal", py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
       "An elevation grid to the bytes of a compact model file (from_bytes reads them): refined by the surface itself "
       "and rounded, with every valid cell within max_error of what is read back; vertices or ratio: a budget. surface: "
-      "linear or clough-tocher. fit: least-squares or z-only. effort: fast, normal or best, as fit has it.");
+      "linear or clough-tocher. fit: least-squares or z-only. creases: auto folds clough-tocher at vertices beside "
+      "steps "
+      "(what max_error does by itself), none keeps it smooth. effort: fast, normal or best, as fit has it.");
   auto terrain =
       py::reinterpret_borrow<py::class_<TerrainModel, std::shared_ptr<TerrainModel>>>(module.attr("Terrain"));
   terrain.def(

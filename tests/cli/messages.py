@@ -132,7 +132,8 @@ ROWS = [
     ("compare g.asc m.retalho --visibility 100 --visibility-maps g.asc/x", 5, "cannot make the folder"),
     # contour
     ("contour m.retalho -o o.gpkg --interval 5 --surface linear", 2, "a model has its surface already: --surface"), ("contour p.xyz -o o.gpkg --interval 5 --surface bicubic", 2, "needs a grid: points take the other three"),
-    ("contour g.asc -o o.gpkg --interval 5 --vertices 9", 2, "--surface bicubic takes every cell"), ("contour m.retalho --interval 5 --compare-surfaces o.png", 2, "--compare-surfaces is for grids and points"),
+    ("contour g.asc -o o.gpkg --interval 5 --vertices 9", 2, "--surface bicubic takes every cell"), ("contour g.asc --interval 5 --compare-surfaces o.png --vertices 9", 2, "--compare-surfaces draws every cell or point"),
+    ("contour m.retalho -o o.gpkg --interval 5 --max-error 1", 2, "a model has its vertices already"), ("contour m.retalho --interval 5 --compare-surfaces o.png", 2, "--compare-surfaces is for grids and points"),
     ("contour void.asc --interval 5 --compare-surfaces o.png", 3, "the part that is shown has no data"), ("contour g.asc -o o.gpkg", 2, "say which levels"),
     ("contour g.asc --interval 5", 2, "name an output: -o FILE for lines"), ("contour g.asc -o o.gpkg --levels 5,x", 2, "is not a number (100,200,350)"),
     ("contour g.asc -o o.gpkg --interval 5 --title Hills", 2, "is for map sheets: name the output .svg or .pdf"),

@@ -427,6 +427,9 @@ def test_compact_files(tmp_path: pathlib.Path, program: pathlib.Path) -> None:
     assert isinstance(read, retalho.Terrain) and isinstance(twin, retalho.Terrain)
     assert (read.vertices == twin.vertices).all() and (read.vertex_gradients == twin.vertex_gradients).all()
     assert read.compare(grid).max_error <= 2.0 and len(data) < len(retalho.fit(grid, max_error=2.0).to_bytes())
+    smooth = retalho.fit_compact(grid, max_error=2.0, creases="none")
+    assert smooth[4] == 1 and data == retalho.fit_compact(grid, max_error=2.0, creases="auto")
+    assert retalho.fit_compact(grid, vertices=200) == retalho.fit_compact(grid, vertices=200, creases="none")
     flat = retalho.from_bytes(retalho.fit_compact(grid, vertices=200, surface="linear"))
     assert isinstance(flat, retalho.Terrain) and len(flat.vertices) <= 200
     for wrong in ({}, {"max_error": 0.0}, {"vertices": 2}, {"max_error": 1.0, "surface": "powell-sabin"},

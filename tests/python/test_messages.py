@@ -82,6 +82,8 @@ ROWS: list[tuple[str, Callable[[], object]]] = [
     ("max_error must be over 0, not 0", lambda: retalho.fit_compact(Z, max_error=0)),
     ("surface must be 'linear' or 'clough-tocher', not 'powell-sabin'", lambda: retalho.fit_compact(Z, max_error=1, surface="powell-sabin")),
     ("fit must be 'least-squares' or 'z-only', not 'quick'", lambda: retalho.fit_compact(Z, max_error=1, fit="quick")),
+    ("creases of a compact file must be 'auto' or 'none', not 'all'", lambda: retalho.fit_compact(Z, max_error=1, creases="all")),
+    ("creases='auto' folds vertices that have gradients", lambda: retalho.fit_compact(Z, max_error=1, surface="linear", creases="auto")),
     ("fit='z-only' is for surface='clough-tocher'", lambda: retalho.fit_compact(Z, max_error=1, surface="linear", fit="z-only")),
     # terrain
     ("is none of height, gradient, slope, aspect, normal, curvature", lambda: model().sample(what="warmth")),
